@@ -1,0 +1,2 @@
+//! The `twinlight` command.
+fn main() {}
