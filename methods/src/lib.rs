@@ -1,1 +1,5 @@
-//! placeholder
+//! Light transport methods, each generic over the backend, and what happens to their images afterwards.
+//!
+//! [`post`] compares, tone-maps and colours finished images; it knows no backend.
+
+pub mod post;
