@@ -1,0 +1,125 @@
+//! `Backend`: typed buffers and one method per kernel. The library's table of contents.
+
+use crate::error::Result;
+use crate::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use crate::kernels::trace::{Hit, Ray};
+use crate::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use crate::scene::CompiledScene;
+use bytemuck::Pod;
+
+/// What runs the kernels, for reports.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BackendInfo {
+    /// `cpu` or `gpu`.
+    pub kind: &'static str,
+    /// Processor or adapter.
+    pub device: String,
+    /// Driver and version; on the CPU the instruction set chosen at run time.
+    pub driver: String,
+    /// Whether float results are those of IEEE 754 evaluated as written: true on the CPU, on a GPU in strict mode.
+    pub strict: bool,
+}
+
+/// A device that runs every kernel of the library.
+///
+/// Calls are synchronous in meaning: the effects of one are seen by the next. Lengths are checked before anything
+/// runs. Nothing panics on input.
+pub trait Backend {
+    /// A typed array on the device.
+    type Buffer<T: Pod + Send + Sync>;
+    /// A scene on the device: geometry, acceleration structure, materials, lights, texels.
+    type Scene;
+
+    /// What this backend is.
+    fn info(&self) -> BackendInfo;
+
+    /// Copies host data to a new buffer.
+    ///
+    /// # Errors
+    /// [`crate::Error::LimitExceeded`] or [`crate::Error::OutOfMemory`] when the device can't hold it.
+    fn upload<T: Pod + Send + Sync>(&self, data: &[T]) -> Result<Self::Buffer<T>>;
+
+    /// A new buffer of `len` zeroed elements.
+    ///
+    /// # Errors
+    /// As [`Backend::upload`].
+    fn zeroed<T: Pod + Send + Sync>(&self, len: usize) -> Result<Self::Buffer<T>>;
+
+    /// Copies a buffer back.
+    ///
+    /// # Errors
+    /// [`crate::Error::DeviceLost`] when the device went away.
+    fn download<T: Pod + Send + Sync>(&self, buffer: &Self::Buffer<T>) -> Result<Vec<T>>;
+
+    /// Number of elements of a buffer.
+    fn len<T: Pod + Send + Sync>(&self, buffer: &Self::Buffer<T>) -> usize;
+
+    /// Makes a scene resident.
+    ///
+    /// # Errors
+    /// As [`Backend::upload`].
+    fn upload_scene(&self, scene: &CompiledScene) -> Result<Self::Scene>;
+
+    /// Exclusive prefix sum; returns the total. Contract: [`crate::kernels::scan`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] when the lengths differ.
+    fn scan(&self, input: &Self::Buffer<u32>, output: &mut Self::Buffer<u32>) -> Result<u32>;
+
+    /// Stable ascending sort of 32-bit keys with payload, in place. Contract: [`crate::kernels::sort`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] when the lengths differ.
+    fn sort_u32(&self, keys: &mut Self::Buffer<u32>, payload: &mut Self::Buffer<u32>) -> Result<()>;
+
+    /// Stable ascending sort of 64-bit keys with payload, in place. Contract: [`crate::kernels::sort`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] when the lengths differ.
+    fn sort_u64(&self, keys: &mut Self::Buffer<u64>, payload: &mut Self::Buffer<u32>) -> Result<()>;
+
+    /// Closest hit of every ray. Contract: [`crate::kernels::trace`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] when the lengths differ.
+    fn trace_closest(
+        &self,
+        scene: &Self::Scene,
+        rays: &Self::Buffer<Ray>,
+        hits: &mut Self::Buffer<Hit>,
+    ) -> Result<()>;
+
+    /// Whether anything lies on each ray: 1 or 0. Contract: [`crate::kernels::trace`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] when the lengths differ.
+    fn trace_any(
+        &self,
+        scene: &Self::Scene,
+        rays: &Self::Buffer<Ray>,
+        occluded: &mut Self::Buffer<u32>,
+    ) -> Result<()>;
+
+    /// What the camera sees at pixel centres. Contract: [`crate::kernels::shade_primary`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] when the buffer's length is not `width * height`.
+    fn shade_primary(
+        &self,
+        scene: &Self::Scene,
+        params: &ShadePrimaryParams,
+        gbuffer: &mut Self::Buffer<GBufferTexel>,
+    ) -> Result<()>;
+
+    /// Adds samples `sample_begin..sample_begin + sample_count` of some pixels' light to a film. Contract:
+    /// [`crate::kernels::trace_paths`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] when the film's length is not `width * height` or the pixel range leaves it.
+    fn trace_paths(
+        &self,
+        scene: &Self::Scene,
+        params: &TracePathsParams,
+        film: &mut Self::Buffer<FilmTexel>,
+    ) -> Result<()>;
+}
