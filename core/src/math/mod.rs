@@ -1,1 +1,7 @@
 //! The mathematics kernels share. Each file is the twin of `backend-gpu/src/shared/<stem>.wgsl`.
+
+pub mod fixed;
+pub mod hash;
+pub mod sobol;
+pub mod trig;
+pub mod vector;

@@ -1,0 +1,103 @@
+//! Fixed point in pairs of u32: sums whose bits don't depend on their order. Twin: `backend-gpu/src/shared/fixed.wgsl`.
+
+/// A u64 as (low, high) words.
+pub type Words = [u32; 2];
+
+/// What [`from_float`] returns for a value that is negative, not finite or at least 2⁶² quanta.
+pub const OUT_OF_RANGE: Words = [u32::MAX, u32::MAX];
+
+/// ⌊x·2^exponent + ½⌋ for x ≥ 0, computed on the bits of x, so that no float rounding intervenes.
+#[inline(always)]
+pub fn from_float(x: f32, exponent: i32) -> Words {
+    let bits = x.to_bits();
+    let biased = bits >> 23;
+    // Subnormals count as 0: adapters flush them.
+    if biased == 0 || bits == 0x8000_0000 {
+        return [0, 0];
+    }
+    // Sign bit set, infinity or NaN.
+    if biased >= 255 {
+        return OUT_OF_RANGE;
+    }
+    let mantissa = (bits & 0x007f_ffff) | 0x0080_0000;
+    let shift = biased as i32 - 150 + exponent;
+    if shift > 38 {
+        return OUT_OF_RANGE;
+    }
+    if shift >= 0 {
+        return shift_left(mantissa, shift as u32);
+    }
+    let down = (-shift) as u32;
+    if down > 24 {
+        return [0, 0];
+    }
+    [((mantissa >> (down - 1)) + 1) >> 1, 0]
+}
+
+/// `value · 2^shift` for shift in 0..=38 and value below 2²⁴.
+#[inline(always)]
+fn shift_left(value: u32, shift: u32) -> Words {
+    if shift >= 32 {
+        return [0, value << (shift - 32)];
+    }
+    if shift == 0 {
+        return [value, 0];
+    }
+    [value << shift, value >> (32 - shift)]
+}
+
+/// Sum, saturating at 2⁶⁴ − 1. Saturating sums of non-negative numbers don't depend on the order either.
+#[inline(always)]
+pub fn add_saturating(a: Words, b: Words) -> Words {
+    let low = a[0].wrapping_add(b[0]);
+    let carry = u32::from(low < a[0]);
+    let high = a[1].wrapping_add(b[1]);
+    let high_carried = high.wrapping_add(carry);
+    if high < a[1] || high_carried < high { OUT_OF_RANGE } else { [low, high_carried] }
+}
+
+/// The value in units of radiance, exact to f64.
+pub fn to_f64(words: Words, exponent: i32) -> f64 {
+    let value = u64::from(words[1]) << 32 | u64::from(words[0]);
+    value as f64 * f64::from(-exponent).exp2()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn wide(w: Words) -> u64 {
+        u64::from(w[1]) << 32 | u64::from(w[0])
+    }
+
+    proptest! {
+        #[test]
+        fn conversion_rounds_half_up(x in 1e-6_f32..1e6, exponent in -20_i32..40) {
+            let exact = f64::from(x) * f64::from(exponent).exp2();
+            if exact < 4.6e18 {
+                prop_assert_eq!(wide(from_float(x, exponent)), (exact + 0.5).floor() as u64);
+            }
+        }
+
+        #[test]
+        fn addition_is_that_of_u64(a: u64, b: u64) {
+            let split = |x: u64| [x as u32, (x >> 32) as u32];
+            prop_assert_eq!(wide(add_saturating(split(a), split(b))), a.saturating_add(b));
+        }
+    }
+
+    #[test]
+    fn edges() {
+        assert_eq!(from_float(0.0, 40), [0, 0]);
+        assert_eq!(from_float(-0.0, 40), [0, 0]);
+        assert_eq!(from_float(1e-40, 40), [0, 0]);
+        assert_eq!(from_float(0.5, 0), [1, 0]);
+        assert_eq!(from_float(0.25, 0), [0, 0]);
+        assert_eq!(from_float(0.499, 0), [0, 0]);
+        assert_eq!(from_float(1.0, 61), [0, 1 << 29]);
+        for bad in [-1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 4.0] {
+            assert_eq!(from_float(bad, 61), OUT_OF_RANGE, "{bad}");
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Vectors beyond sums and products. Twin: `backend-gpu/src/shared/vector.wgsl`.
+
+use glam::Vec3;
+
+/// v / |v| for vectors of ordinary length (about 10⁻¹⁵ to 10¹⁵); 0 for 0.
+#[inline(always)]
+pub fn normalized(v: Vec3) -> Vec3 {
+    let squared = v.dot(v);
+    if !(squared > 0.0) {
+        return Vec3::ZERO;
+    }
+    let length = squared.sqrt();
+    Vec3::new(v.x / length, v.y / length, v.z / length)
+}
+
+/// v / |v| for vectors of any length, as cross products of edges are; 0 for 0.
+#[inline(always)]
+pub fn normalized_any(v: Vec3) -> Vec3 {
+    let a = v.abs();
+    let xy = if a.x > a.y { a.x } else { a.y };
+    let largest = if xy > a.z { xy } else { a.z };
+    if !(largest > 1e-35) {
+        return Vec3::ZERO;
+    }
+    normalized(Vec3::new(v.x / largest, v.y / largest, v.z / largest))
+}
+
+/// Two vectors that complete the unit vector n to a right-handed orthonormal basis. Duff et al., "Building an
+/// orthonormal basis, revisited", JCGT 6(1) 2017: no branch on n.z but its sign, accurate at both poles.
+#[inline(always)]
+pub fn basis(n: Vec3) -> (Vec3, Vec3) {
+    let sign = if n.z < 0.0 { -1.0_f32 } else { 1.0 };
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    (Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3::new(b, sign + n.y * n.y * a, -n.y))
+}
+
+/// `t·v.x + b·v.y + n·v.z`.
+#[inline(always)]
+pub fn to_world(t: Vec3, b: Vec3, n: Vec3, v: Vec3) -> Vec3 {
+    t * v.x + b * v.y + n * v.z
+}
+
+/// The point of the unit disc for a point of the unit square (Shirley & Chiu 1997), area-preserving.
+#[inline(always)]
+pub fn concentric_disc(u: f32, v: f32) -> (f32, f32) {
+    let x = 2.0 * u - 1.0;
+    let y = 2.0 * v - 1.0;
+    if x == 0.0 && y == 0.0 {
+        return (0.0, 0.0);
+    }
+    let horizontal = x.abs() > y.abs();
+    let radius = if horizontal { x } else { y };
+    // An eighth of a turn per unit of the ratio; negative angles are brought to [0, 1).
+    let turns = if horizontal { 0.125 * (y / x) } else { 0.25 - 0.125 * (x / y) };
+    let (s, c) = super::trig::sin_cos_turns(if turns < 0.0 { turns + 1.0 } else { turns });
+    (radius * c, radius * s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bases_are_orthonormal_at_the_poles_too() {
+        let just_above = f32::from_bits((-1.0_f32).to_bits() - 1);
+        let mut normals = vec![Vec3::Z, -Vec3::Z, Vec3::X, Vec3::Y];
+        normals.push(normalized(Vec3::new(1e-4, 0.0, just_above)));
+        normals.extend((0..1000).map(|i| {
+            let [a, b, c] = [17, 31, 53].map(|k| ((i * k) % 101) as f32 - 50.0);
+            normalized(Vec3::new(a, b, c + 0.5))
+        }));
+        for n in normals {
+            let (t, b) = basis(n);
+            for dot in [t.dot(b), t.dot(n), b.dot(n)] {
+                assert!(dot.abs() < 1e-6, "{n}: {dot}");
+            }
+            for v in [t, b] {
+                assert!((v.dot(v) - 1.0).abs() < 1e-6, "{n}");
+            }
+            assert!(t.cross(b).dot(n) > 0.999);
+        }
+    }
+
+    #[test]
+    fn any_length_normalizes() {
+        for scale in [1e-30_f32, 1e-20, 1.0, 1e20, 1e30] {
+            let v = normalized_any(Vec3::new(3.0, -4.0, 12.0) * scale);
+            assert!((v.dot(v) - 1.0).abs() < 1e-6, "{scale}");
+        }
+        assert_eq!(normalized_any(Vec3::ZERO), Vec3::ZERO);
+        assert_eq!(normalized(Vec3::ZERO), Vec3::ZERO);
+    }
+}
