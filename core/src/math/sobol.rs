@@ -68,7 +68,10 @@ mod tests {
     #[test]
     fn second_dimension_is_sobols() {
         for index in (0..4096).chain([0x8000_0000, 0xffff_ffff, 0x1234_5678]) {
-            assert_eq!(second_dimension_reversed(index).reverse_bits(), second_dimension_by_definition(index));
+            assert_eq!(
+                second_dimension_reversed(index).reverse_bits(),
+                second_dimension_by_definition(index)
+            );
         }
     }
 

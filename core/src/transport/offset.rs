@@ -1,0 +1,34 @@
+//! Ray origins off the surface they start on, by error bounds instead of a scene epsilon. Twin:
+//! `backend-gpu/src/shared/offset.wgsl`. Source: Pharr, Jakob, Humphreys, PBRT 4th ed. §6.8.
+
+use glam::Vec3;
+
+/// γ(9) = 9u/(1 − 9u), u = 2⁻²⁴: barycentric interpolation makes 7 roundings (PBRT §6.8.5); the third weight,
+/// 1 − u − v, is rounded twice more.
+pub const POSITION_ERROR: f32 = 5.364_421e-7;
+
+/// The next f32 away from 0 on the side of `toward`; 0 goes to ±2⁻¹⁰⁰, past the subnormals that adapters flush.
+#[inline(always)]
+fn nudged(x: f32, toward: f32) -> f32 {
+    if toward == 0.0 {
+        return x;
+    }
+    if x == 0.0 {
+        return if toward > 0.0 { 7.888_609e-31 } else { -7.888_609e-31 };
+    }
+    let bits = x.to_bits();
+    let outwards = (x > 0.0) == (toward > 0.0);
+    f32::from_bits(if outwards { bits + 1 } else { bits - 1 })
+}
+
+/// A point on the side of the surface that `direction` leaves to, so far from `position` that the true surface, within
+/// `error` (absolute, per axis), isn't met again.
+#[inline(always)]
+pub fn offset_origin(position: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
+    let a = normal.abs();
+    let distance = a.dot(error);
+    let side = if direction.dot(normal) < 0.0 { -distance } else { distance };
+    let offset = normal * side;
+    let moved = position + offset;
+    Vec3::new(nudged(moved.x, offset.x), nudged(moved.y, offset.y), nudged(moved.z, offset.z))
+}
