@@ -1,0 +1,258 @@
+//! [`CpuBackend`]: checks the caller's lengths, then runs a kernel in a thread pool and turns a panic into an error.
+
+use crate::buffer::{CpuBuffer, try_copy, try_zeroed};
+use crate::isa::{Isa, processor};
+use crate::{CpuScene, kernels};
+use bytemuck::Pod;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use twinlight_core::kernels::trace::{Hit, Ray};
+use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use twinlight_core::kernels::{scan, sort};
+use twinlight_core::scene::CompiledScene;
+use twinlight_core::{Backend, BackendInfo, Error, Result};
+
+/// Most threads a pool of our own may have.
+const MAX_THREADS: usize = 1024;
+
+/// Every kernel on the host's processor. Clones share the thread pool.
+#[derive(Debug, Clone)]
+pub struct CpuBackend {
+    pool: Option<Arc<ThreadPool>>,
+    isa: Isa,
+}
+
+impl Default for CpuBackend {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl CpuBackend {
+    /// Uses the rayon pool of the calling thread: the caller's own, or the global one.
+    pub fn new() -> Self {
+        Self { pool: None, isa: Isa::detect() }
+    }
+
+    /// Starts a pool of `threads` threads.
+    ///
+    /// # Errors
+    /// [`Error::InvalidInput`] for 0, [`Error::LimitExceeded`] above 1024, [`Error::BackendUnavailable`] when the
+    /// system refuses to start them.
+    pub fn with_threads(threads: usize) -> Result<Self> {
+        if threads == 0 {
+            return Err(Error::invalid("threads", "0; at least one is needed"));
+        }
+        if threads > MAX_THREADS {
+            return Err(Error::limit("threads", threads as u64, MAX_THREADS as u64));
+        }
+        let pool = ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .thread_name(|i| format!("twinlight-{i}"))
+            .build()
+            .map_err(|e| Error::BackendUnavailable { tried: format!("cpu with {threads} threads: {e}") })?;
+        Ok(Self { pool: Some(Arc::new(pool)), isa: Isa::detect() })
+    }
+
+    /// Threads that kernels called from here run on.
+    pub fn threads(&self) -> usize {
+        self.pool.as_ref().map_or_else(rayon::current_num_threads, |pool| pool.current_num_threads())
+    }
+
+    /// Runs a kernel in the pool. A panic, on whatever thread, ends as [`Error::Internal`]: buffers the kernel was
+    /// writing hold some initialised values, and the backend stays usable.
+    fn run<R: Send>(&self, kernel: &str, body: impl FnOnce() -> Result<R> + Send) -> Result<R> {
+        let guarded = AssertUnwindSafe(|| match &self.pool {
+            Some(pool) => pool.install(body),
+            None => body(),
+        });
+        catch_unwind(guarded)
+            .unwrap_or_else(|panic| Err(Error::Internal(format!("{kernel}: {}", panic_text(&*panic)))))
+    }
+}
+
+fn panic_text(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("panic without a message")
+}
+
+fn check_equal(place: &str, found: usize, expected: usize) -> Result<()> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(Error::invalid(place, format!("has {found} elements where {expected} are needed")))
+}
+
+fn check_limit(what: &str, found: usize, limit: usize) -> Result<()> {
+    if found <= limit { Ok(()) } else { Err(Error::limit(what, found as u64, limit as u64)) }
+}
+
+impl Backend for CpuBackend {
+    type Buffer<T: Pod + Send + Sync> = CpuBuffer<T>;
+    type Scene = CpuScene;
+
+    fn info(&self) -> BackendInfo {
+        let driver = format!("{}, {} threads", self.isa.name(), self.threads());
+        BackendInfo { kind: "cpu", device: processor(), driver, strict: true }
+    }
+
+    fn upload<T: Pod + Send + Sync>(&self, data: &[T]) -> Result<CpuBuffer<T>> {
+        try_copy(data).map(CpuBuffer::from)
+    }
+
+    fn zeroed<T: Pod + Send + Sync>(&self, len: usize) -> Result<CpuBuffer<T>> {
+        try_zeroed(len).map(CpuBuffer::from)
+    }
+
+    fn download<T: Pod + Send + Sync>(&self, buffer: &CpuBuffer<T>) -> Result<Vec<T>> {
+        try_copy(buffer.as_slice())
+    }
+
+    fn len<T: Pod + Send + Sync>(&self, buffer: &CpuBuffer<T>) -> usize {
+        buffer.as_slice().len()
+    }
+
+    fn upload_scene(&self, scene: &CompiledScene) -> Result<CpuScene> {
+        self.run("upload_scene", || CpuScene::new(scene))
+    }
+
+    fn scan(&self, input: &CpuBuffer<u32>, output: &mut CpuBuffer<u32>) -> Result<u32> {
+        let (input, output) = (input.as_slice(), output.as_mut_slice());
+        check_equal("scan output", output.len(), input.len())?;
+        check_limit("elements to scan", input.len(), scan::MAX_LEN)?;
+        self.run("scan", || Ok(kernels::scan::scan(input, output)))
+    }
+
+    fn sort_u32(&self, keys: &mut CpuBuffer<u32>, payload: &mut CpuBuffer<u32>) -> Result<()> {
+        let (keys, payload) = (keys.as_mut_slice(), payload.as_mut_slice());
+        check_equal("sort_u32 payload", payload.len(), keys.len())?;
+        check_limit("pairs to sort", keys.len(), sort::MAX_LEN)?;
+        self.run("sort_u32", || kernels::sort::sort(keys, payload))
+    }
+
+    fn sort_u64(&self, keys: &mut CpuBuffer<u64>, payload: &mut CpuBuffer<u32>) -> Result<()> {
+        let (keys, payload) = (keys.as_mut_slice(), payload.as_mut_slice());
+        check_equal("sort_u64 payload", payload.len(), keys.len())?;
+        check_limit("pairs to sort", keys.len(), sort::MAX_LEN)?;
+        self.run("sort_u64", || kernels::sort::sort(keys, payload))
+    }
+
+    fn trace_closest(
+        &self,
+        scene: &CpuScene,
+        rays: &CpuBuffer<Ray>,
+        hits: &mut CpuBuffer<Hit>,
+    ) -> Result<()> {
+        let (rays, hits) = (rays.as_slice(), hits.as_mut_slice());
+        check_equal("trace_closest hits", hits.len(), rays.len())?;
+        self.run("trace_closest", || {
+            kernels::trace::trace_closest(scene.data(), rays, hits);
+            Ok(())
+        })
+    }
+
+    fn trace_any(
+        &self,
+        scene: &CpuScene,
+        rays: &CpuBuffer<Ray>,
+        occluded: &mut CpuBuffer<u32>,
+    ) -> Result<()> {
+        let (rays, occluded) = (rays.as_slice(), occluded.as_mut_slice());
+        check_equal("trace_any occluded", occluded.len(), rays.len())?;
+        self.run("trace_any", || {
+            kernels::trace::trace_any(scene.data(), rays, occluded);
+            Ok(())
+        })
+    }
+
+    fn shade_primary(
+        &self,
+        _scene: &CpuScene,
+        _params: &ShadePrimaryParams,
+        _gbuffer: &mut CpuBuffer<GBufferTexel>,
+    ) -> Result<()> {
+        Err(Error::Unsupported("shade_primary on the cpu backend".into()))
+    }
+
+    fn trace_paths(
+        &self,
+        _scene: &CpuScene,
+        _params: &TracePathsParams,
+        _film: &mut CpuBuffer<FilmTexel>,
+    ) -> Result<()> {
+        Err(Error::Unsupported("trace_paths on the cpu backend".into()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rayon::prelude::*;
+
+    /// D9: a panic on a worker or on the calling thread is an error, and the backend goes on working.
+    #[test]
+    fn panics_become_internal_errors() {
+        for backend in [CpuBackend::new(), CpuBackend::with_threads(3).unwrap()] {
+            let on_worker = backend.run("probe", || {
+                (0..100).into_par_iter().for_each(|i| assert!(i != 57, "planted at {i}"));
+                Ok(())
+            });
+            assert!(matches!(on_worker, Err(Error::Internal(text)) if text == "probe: planted at 57"));
+            let on_caller: Result<()> = backend.run("probe", || panic!("planted"));
+            assert!(matches!(on_caller, Err(Error::Internal(text)) if text == "probe: planted"));
+            assert_eq!(backend.run("probe", || Ok(5)).unwrap(), 5);
+        }
+    }
+
+    #[test]
+    fn thread_counts_are_checked() {
+        assert!(matches!(CpuBackend::with_threads(0), Err(Error::InvalidInput { .. })));
+        assert!(matches!(
+            CpuBackend::with_threads(usize::MAX),
+            Err(Error::LimitExceeded { limit: 1024, .. })
+        ));
+        assert_eq!(CpuBackend::with_threads(3).unwrap().threads(), 3);
+    }
+
+    #[test]
+    fn information_names_processor_and_instruction_set() {
+        let info = CpuBackend::with_threads(2).unwrap().info();
+        assert_eq!(info.kind, "cpu");
+        assert!(!info.device.is_empty());
+        assert!(info.driver.starts_with(std::env::consts::ARCH), "{}", info.driver);
+        assert!(info.driver.ends_with(", 2 threads"), "{}", info.driver);
+        assert!(info.strict);
+    }
+
+    #[test]
+    fn lengths_are_checked_before_anything_runs() {
+        let backend = CpuBackend::new();
+        let (two, mut three) = (backend.upload(&[1_u32, 2]).unwrap(), backend.upload(&[7_u32; 3]).unwrap());
+        assert_eq!(
+            backend.scan(&two, &mut three).unwrap_err().to_string(),
+            "scan output: has 3 elements where 2 are needed"
+        );
+        assert_eq!(three.as_slice(), [7; 3]);
+        let mut keys = backend.upload(&[2_u64, 1]).unwrap();
+        assert!(matches!(backend.sort_u64(&mut keys, &mut three), Err(Error::InvalidInput { .. })));
+        assert!(matches!(backend.sort_u32(&mut two.clone(), &mut three), Err(Error::InvalidInput { .. })));
+        assert_eq!(keys.as_slice(), [2, 1]);
+    }
+
+    /// Pages that nothing touches cost nothing, so the limits themselves can be passed by one.
+    #[test]
+    fn lengths_beyond_the_limits_are_errors() {
+        let backend = CpuBackend::new();
+        let mut long = backend.zeroed::<u32>(scan::MAX_LEN + 1).unwrap();
+        let mut also = backend.zeroed::<u32>(scan::MAX_LEN + 1).unwrap();
+        let error = backend.scan(&long, &mut also).unwrap_err().to_string();
+        assert_eq!(error, "elements to scan: needs 134217729, the limit is 134217728");
+        assert!(matches!(backend.sort_u32(&mut long, &mut also), Err(Error::LimitExceeded { .. })));
+        let mut keys = backend.zeroed::<u64>(sort::MAX_LEN + 1).unwrap();
+        let mut payload = backend.zeroed::<u32>(sort::MAX_LEN + 1).unwrap();
+        assert!(matches!(backend.sort_u64(&mut keys, &mut payload), Err(Error::LimitExceeded { .. })));
+    }
+}
