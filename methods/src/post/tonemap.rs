@@ -99,6 +99,12 @@ impl Display {
         self.operator
     }
 
+    /// The tone-mapped colour T of the metrics' formulas, in words, for printing beside them.
+    pub fn formula(&self) -> String {
+        let (curve, stops) = (self.operator.formula(), self.exposure_stops);
+        format!("T = {curve}, clamped to [0, 1]; x = 2^{stops} radiance")
+    }
+
     /// Radiance to linear display values in [0, 1]. NaN and negative values become 0, +inf the curve's end.
     pub fn map(&self, radiance: [f32; 3]) -> [f64; 3] {
         // inf would give inf/inf in the curves; the largest f32 lands on the same display value.
@@ -159,8 +165,9 @@ mod tests {
     fn keys_parse_back() {
         for operator in Operator::ALL {
             assert_eq!(operator.key().parse(), Ok(operator));
-            assert!(!operator.formula().is_empty());
         }
+        let formula = "T = x / (1 + Y(x)), clamped to [0, 1]; x = 2^-1.5 radiance";
+        assert_eq!(display(-1.5, Operator::Reinhard).formula(), formula);
         assert_eq!("filmic".parse::<Operator>(), Err(PostError::UnknownOperator("filmic".into())));
     }
 

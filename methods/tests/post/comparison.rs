@@ -1,5 +1,6 @@
 //! Known answers of small pictures, and every awkward input.
 
+use crate::patterns::{noise_colour, picture};
 use twinlight_methods::post::PostError;
 use twinlight_methods::post::image::Image;
 use twinlight_methods::post::metrics::{CompareSettings, Comparison, Metric};
@@ -35,9 +36,18 @@ fn two_pixels_by_hand() {
     assert_eq!(result.mean_reference, [1.0, 0.375, 0.5]);
     assert_eq!((result.max_abs, result.max_abs_at), (1.0, (1, 0)));
     assert_eq!((result.differing_pixels, result.compared_pixels), (2, 2));
-    for metric in Metric::ALL {
-        assert!(result.value(metric).is_finite());
-    }
+    let fields = [
+        result.mae,
+        result.mse,
+        result.nrmse,
+        result.rel_mse,
+        result.psnr,
+        result.mssim,
+        result.flip,
+        result.radiance_ratio,
+    ];
+    assert_eq!(Metric::ALL.map(|metric| result.value(metric)), fields);
+    assert!(fields.iter().all(|value| value.is_finite()));
 }
 
 #[test]
@@ -46,6 +56,10 @@ fn psnr_of_black_and_white() {
     let reference = image(2, &[[0.0; 3], [1.0; 3]]);
     let test = image(2, &[[0.0; 3], [1.0, 1.0, 0.0]]);
     assert_close(compare(&test, &reference).psnr, 10.0 * 6f64.log10());
+    // Grey 0.25 has the sRGB value 0.5371 (byte 137): PSNR sees the encoded difference.
+    let encoded = 1.055 * 0.25f64.powf(1.0 / 2.4) - 0.055;
+    let (grey, black) = (image(1, &[[0.25; 3]]), image(1, &[[0.0; 3]]));
+    assert_close(compare(&grey, &black).psnr, -20.0 * encoded.log10());
     // Both beyond the display: radiance differs, the display shows the same.
     let (bright, brighter) = (image(1, &[[2.0; 3]]), image(1, &[[3.0; 3]]));
     let result = compare(&brighter, &bright);
@@ -60,6 +74,29 @@ fn mssim_of_constants_by_hand() {
     let expected = 1e-4 / (1.0 + 1e-4);
     // The window's weights sum to 1 within rounding, which the small numerator magnifies: 1e-16 / 1e-4.
     assert!((compare(&white, &black).mssim - expected).abs() < 1e-11);
+}
+
+#[test]
+fn mssim_leaves_out_the_window_of_a_non_finite_pixel() {
+    // 11x12 pixels have two whole windows; the NaN is the centre of the lower one.
+    let (test, reference) = (picture(11, 12, noise_colour(0)), picture(11, 12, noise_colour(1)));
+    let with_centre = |image: &Image, rows: usize, colour: [f32; 3]| {
+        let mut pixels = image.pixels()[..11 * rows].to_vec();
+        pixels[6 * 11 + 5] = colour;
+        Image::new(11, rows as u32, pixels).unwrap()
+    };
+    let value = compare(&with_centre(&test, 12, [f32::NAN; 3]), &reference).mssim;
+    // The upper window alone, with the pixel black in both.
+    let upper = compare(&with_centre(&test, 11, [0.0; 3]), &with_centre(&reference, 11, [0.0; 3])).mssim;
+    assert_eq!(value, upper);
+    assert_ne!(value, compare(&test, &reference).mssim);
+}
+
+#[test]
+fn bits_are_compared_as_bits() {
+    let (zero, minus) = (image(2, &[[0.0; 3], [f32::NAN; 3]]), image(2, &[[-0.0; 3], [f32::NAN; 3]]));
+    assert_eq!(compare(&minus, &zero).differing_pixels, 1);
+    assert_eq!(compare(&zero, &zero).differing_pixels, 0);
 }
 
 #[test]

@@ -67,6 +67,8 @@ fn z_by_hand() {
     }
     // Šidák for 48 tests at 0.01 is p = 2.0936e-4, two-sided z = 3.7075: 3 is no surprise, a bias of 12 is.
     assert!((result.threshold - 3.7075).abs() < 1e-3, "{}", result.threshold);
+    // For the three channels p = 3.3445e-3, z = 2.9342.
+    assert!((result.bias_threshold - 2.9342).abs() < 1e-3, "{}", result.bias_threshold);
     assert!(result.pixels_pass() && !result.bias_passes() && !result.passes());
 }
 
@@ -83,6 +85,15 @@ fn equal_expectations_pass_and_unequal_ones_do_not() {
     let darker = run(&sampled(0.99, 2, 24), &reference, ZTestSettings::default()).unwrap();
     assert!(darker.pixels_pass() && !darker.bias_passes());
     assert!(darker.bias_z.iter().all(|&z| z < 0.0));
+}
+
+#[test]
+fn signed_ratio_by_hand() {
+    // Twelve differences of 3 and four of -1 in red: (36 - 4) / (36 + 4); green and blue cancel or agree.
+    let means = |x: u32| if x < 3 { [3.0, 1.0, 0.0] } else { [-1.0, -3.0, 0.0] };
+    let a = Images { mean: Image::from_fn(4, 4, |x, _| means(x)).unwrap(), variance: flat(1.0) };
+    let result = run(&a, &Images::filled(0.0, 1.0), STRICT).unwrap();
+    assert_eq!(result.signed_ratio, [0.8, 0.0, 0.0]);
 }
 
 #[test]

@@ -3,9 +3,9 @@
 //! image, bias does not).
 //!
 //! Assumptions, to be kept in mind where a result surprises: means of enough samples are close to normal; the
-//! given variances are good estimates (a pixel whose rare bright path was never sampled has too small a one, hence
-//! `allowed_fraction`); pixels are independent of each other (Šidák stays valid, on the safe side, for the positive
-//! correlation of the channels of one pixel).
+//! given variances are good estimates (from few samples the tails are Student's and heavier, and a pixel whose rare
+//! bright path was never sampled has too small a variance: hence `allowed_fraction`); pixels are independent of each
+//! other (Šidák stays valid, on the safe side, for the positive correlation of the channels of one pixel).
 
 mod normal;
 

@@ -20,8 +20,8 @@ const WIDEST: f64 = 0.04;
 /// Peak-to-trough distance of the edge detector, in degrees: two standard deviations.
 const FEATURE_WIDTH: f64 = 0.082;
 
-/// All filters for one viewing distance. Every kernel is padded with zeros to `2 * radius + 1` taps, so that one
-/// padded plane serves them all.
+/// All filters for one viewing distance. Every kernel has `2 * radius + 1` taps (the features' end in zeros), so
+/// that one padded plane serves them all.
 pub(super) struct Filters {
     pub radius: usize,
     pub achromatic: Blur,
@@ -34,12 +34,11 @@ pub(super) struct Filters {
 
 impl Filters {
     pub fn new(pixels_per_degree: f64) -> Self {
-        let colour_radius = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as usize;
+        // Three standard deviations of the widest blur; the feature filters' three are always narrower.
+        let radius = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as usize;
         let sigma = 0.5 * FEATURE_WIDTH * pixels_per_degree;
         let feature_radius = (3.0 * sigma).ceil() as usize;
-        // `padded` needs the wider of the two; rounding up can make it either at a coarse pixel pitch.
-        let radius = colour_radius.max(feature_radius);
-        let blur = |terms| Blur::new(terms, pixels_per_degree, colour_radius, radius);
+        let blur = |terms| Blur::new(terms, pixels_per_degree, radius);
 
         let bell = gaussian(sigma, feature_radius);
         let derivative = |weight: fn(f64) -> f64| {
@@ -65,7 +64,7 @@ pub(super) struct Blur {
 }
 
 impl Blur {
-    fn new(terms: &[Term], pixels_per_degree: f64, radius: usize, padded_radius: usize) -> Self {
+    fn new(terms: &[Term], pixels_per_degree: f64, radius: usize) -> Self {
         let mut terms: Vec<(f64, Vec<f64>)> = terms
             .iter()
             .map(|term| {
@@ -73,12 +72,12 @@ impl Blur {
                 let kernel = gaussian((term.b / 2.0).sqrt() / PI * pixels_per_degree, radius);
                 let sum: f64 = kernel.iter().sum();
                 // The paper normalises the sum of both terms, so each counts by its own volume.
-                (term.a * (PI / term.b).sqrt() * sum * sum, padded(normalised(kernel), padded_radius))
+                (term.a * (PI / term.b).sqrt() * sum * sum, normalised(kernel))
             })
             .collect();
         let total: f64 = terms.iter().map(|(weight, _)| weight).sum();
         terms.iter_mut().for_each(|(weight, _)| *weight /= total);
-        Self { radius: padded_radius, terms }
+        Self { radius, terms }
     }
 
     pub fn apply(&self, plane: &Plane) -> Plane {
