@@ -12,6 +12,8 @@ use crate::post::image::Image;
 use crate::post::tonemap::Display;
 use crate::post::{PostError, srgb};
 
+/// Rows of windows that are filtered at once, so that memory does not grow with the image.
+const BAND_ROWS: usize = 64;
 const RADIUS: usize = 5;
 const SIGMA: f64 = 1.5;
 const C1: f64 = 0.01 * 0.01;
@@ -27,28 +29,61 @@ pub fn mssim(test: &Image, reference: &Image, display: &Display) -> Result<f64, 
 
 pub(super) fn of_pair(pair: &Pair, display: &Display) -> Result<f64, PostError> {
     let window = Window::of_image(pair.width(), pair.height());
-    let [x, r] = [Side::Test, Side::Reference].map(|side| encoded_luminance(pair, side, display));
-    let [mean_x, mean_r] = [&x, &r].map(|plane| window.filter(plane));
-    let [mean_xx, mean_rr, mean_xr] =
-        [(&x, &x), (&r, &r), (&x, &r)].map(|(a, b)| window.filter(&product(a, b)));
-
+    let whole_windows = pair.height() - 2 * window.radius_y();
     let (mut sum, mut windows) = (0.0, 0u64);
-    for index in 0..mean_x.values.len() {
-        let (column, row) = (index % mean_x.width, index / mean_x.width);
-        let centre = (row + window.radius_y()) * pair.width() + column + window.radius_x();
-        if pair.is_excluded(centre) {
-            continue;
+    for first in (0..whole_windows).step_by(BAND_ROWS) {
+        let rows = BAND_ROWS.min(whole_windows - first);
+        let band = Band::new(pair, display, &window, first, rows);
+        for index in 0..band.mean_x.values.len() {
+            let (column, row) = (index % band.mean_x.width, first + index / band.mean_x.width);
+            let centre = (row + window.radius_y()) * pair.width() + column + window.radius_x();
+            if !pair.is_excluded(centre) {
+                sum += band.similarity(index);
+                windows += 1;
+            }
         }
-        let (mx, mr) = (mean_x.values[index], mean_r.values[index]);
-        let variance_x = mean_xx.values[index] - mx * mx;
-        let variance_r = mean_rr.values[index] - mr * mr;
-        let covariance = mean_xr.values[index] - mx * mr;
-        let luminance = (2.0 * (mx * mr) + C1) / (mx * mx + mr * mr + C1);
-        let structure = (2.0 * covariance + C2) / (variance_x + variance_r + C2);
-        sum += luminance * structure;
-        windows += 1;
     }
     if windows == 0 { Err(pair.nothing_left()) } else { Ok(sum / windows as f64) }
+}
+
+/// Local moments of both images for some rows of windows.
+struct Band {
+    mean_x: Plane,
+    mean_r: Plane,
+    mean_xx: Plane,
+    mean_rr: Plane,
+    mean_xr: Plane,
+}
+
+impl Band {
+    fn new(pair: &Pair, display: &Display, window: &Window, first: usize, rows: usize) -> Self {
+        let height = rows + 2 * window.radius_y();
+        let encoded_luminance = |side| {
+            Plane::from_fn(pair.width(), height, |x, y| {
+                let index = (first + y) * pair.width() + x;
+                srgb::encode(srgb::luminance(pair.shown(side, display, index)))
+            })
+        };
+        let (x, r) = (encoded_luminance(Side::Test), encoded_luminance(Side::Reference));
+        Self {
+            mean_x: window.filter(&x),
+            mean_r: window.filter(&r),
+            mean_xx: window.filter(&product(&x, &x)),
+            mean_rr: window.filter(&product(&r, &r)),
+            mean_xr: window.filter(&product(&x, &r)),
+        }
+    }
+
+    /// SSIM of one window: the paper's eq. 13.
+    fn similarity(&self, index: usize) -> f64 {
+        let (mx, mr) = (self.mean_x.values[index], self.mean_r.values[index]);
+        let variance_x = self.mean_xx.values[index] - mx * mx;
+        let variance_r = self.mean_rr.values[index] - mr * mr;
+        let covariance = self.mean_xr.values[index] - mx * mr;
+        let luminance = (2.0 * (mx * mr) + C1) / (mx * mx + mr * mr + C1);
+        let structure = (2.0 * covariance + C2) / (variance_x + variance_r + C2);
+        luminance * structure
+    }
 }
 
 struct Window {
@@ -73,13 +108,6 @@ impl Window {
     fn radius_y(&self) -> usize {
         self.vertical.len() / 2
     }
-}
-
-fn encoded_luminance(pair: &Pair, side: Side, display: &Display) -> Plane {
-    let width = pair.width();
-    Plane::from_fn(width, pair.height(), |x, y| {
-        srgb::encode(srgb::luminance(pair.shown(side, display, y * width + x)))
-    })
 }
 
 fn product(a: &Plane, b: &Plane) -> Plane {
