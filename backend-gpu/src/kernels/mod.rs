@@ -1,0 +1,12 @@
+//! The kernels: one `.wgsl` with the algorithm and one `.rs` that sizes its buffers and records its dispatches.
+//!
+//! To add one: write the two files, add the module here and its [`KernelSource`] to [`ALL`], and the method to
+//! `backend.rs`. The tests `sources` and `layout` find it through [`ALL`].
+
+pub mod scan;
+pub mod sort;
+
+use crate::source::KernelSource;
+
+/// Every kernel's source, in pipeline order.
+pub const ALL: &[&KernelSource] = &[&scan::SOURCE, &sort::SOURCE];

@@ -1,0 +1,117 @@
+// kernel family: scan
+// contract core/src/kernels/scan.rs
+// cpu backend-cpu/src/kernels/scan.rs
+// gpu backend-gpu/src/kernels/scan.wgsl
+// oracle conformance/src/oracle/scan.rs
+//! Host side of `scan`.
+
+use crate::buffer::{BufferRef, GpuBuffer};
+use crate::device::GpuDevice;
+use crate::dispatch::Recorder;
+use crate::pipeline::Pipeline;
+use crate::source::{KernelSource, WgslFile};
+use bytemuck::{Pod, Zeroable};
+use std::sync::Arc;
+use twinlight_core::kernels::scan::MAX_LEN;
+use twinlight_core::{Error, Result};
+
+/// The WGSL.
+pub const SOURCE: KernelSource = KernelSource {
+    stem: "scan",
+    files: &[WgslFile { path: "backend-gpu/src/kernels/scan.wgsl", text: include_str!("scan.wgsl") }],
+};
+
+/// Elements per workgroup; twin of the WGSL constant.
+pub const TILE_SIZE: u32 = 4096;
+
+/// Twin of the WGSL struct.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct ScanParams {
+    /// Elements of input and output.
+    pub count: u32,
+    /// Tiles that hold them.
+    pub tile_count: u32,
+}
+
+/// The three pipelines.
+#[derive(Debug)]
+pub struct Scan {
+    reduce_tiles: Arc<Pipeline>,
+    scan_tile_sums: Arc<Pipeline>,
+    scan_tiles: Arc<Pipeline>,
+}
+
+impl Scan {
+    /// Compiles what isn't compiled yet.
+    ///
+    /// # Errors
+    /// As [`GpuDevice::pipeline`].
+    pub fn new(device: &GpuDevice) -> Result<Self> {
+        Ok(Self {
+            reduce_tiles: device.pipeline(&SOURCE, "reduce_tiles")?,
+            scan_tile_sums: device.pipeline(&SOURCE, "scan_tile_sums")?,
+            scan_tiles: device.pipeline(&SOURCE, "scan_tiles")?,
+        })
+    }
+
+    /// Records the scan of `count` elements. `tile_sums` has a tile's sum per element and one element more, which
+    /// receives the total.
+    ///
+    /// # Errors
+    /// As [`Recorder::dispatch`].
+    pub fn record<'a>(
+        &self,
+        recorder: &mut Recorder<'a>,
+        count: u32,
+        input: BufferRef<'a>,
+        tile_sums: BufferRef<'a>,
+        output: BufferRef<'a>,
+    ) -> Result<()> {
+        let tile_count = count.div_ceil(TILE_SIZE);
+        let params = ScanParams { count, tile_count };
+        let buffers = [("input", input), ("tile_sums", tile_sums)];
+        recorder.dispatch("sum every tile", &self.reduce_tiles, &params, &buffers, tile_count)?;
+        self.record_in_place(recorder, tile_count, tile_sums)?;
+        let buffers = [("input", input), ("tile_sums", tile_sums), ("output", output)];
+        recorder.dispatch("scan every tile", &self.scan_tiles, &params, &buffers, tile_count)
+    }
+
+    /// Records the scan of a short buffer by one workgroup, in place; element `count` receives the total.
+    ///
+    /// # Errors
+    /// As [`Recorder::dispatch`].
+    pub fn record_in_place<'a>(
+        &self,
+        recorder: &mut Recorder<'a>,
+        count: u32,
+        values: BufferRef<'a>,
+    ) -> Result<()> {
+        let params = ScanParams { count: 0, tile_count: count };
+        recorder.dispatch("scan the sums", &self.scan_tile_sums, &params, &[("tile_sums", values)], 1)
+    }
+}
+
+/// Runs the kernel; see the contract.
+///
+/// # Errors
+/// [`Error::InvalidInput`] when the lengths differ, [`Error::LimitExceeded`] beyond [`MAX_LEN`] or a binding's size.
+pub fn run(device: &GpuDevice, input: &GpuBuffer<u32>, output: &mut GpuBuffer<u32>) -> Result<u32> {
+    if input.len() != output.len() {
+        return Err(Error::invalid("scan", format!("{} inputs, {} outputs", input.len(), output.len())));
+    }
+    if input.len() > MAX_LEN {
+        return Err(Error::limit("elements of scan", input.len() as u64, MAX_LEN as u64));
+    }
+    if input.is_empty() {
+        return Ok(0);
+    }
+    let count = input.len() as u32;
+    let scan = Scan::new(device)?;
+    let tile_count = count.div_ceil(TILE_SIZE) as usize;
+    let tile_sums = device.zeroed::<u32>(tile_count + 1)?;
+    let mut recorder = device.record("scan counts into offsets");
+    scan.record(&mut recorder, count, input.binding(), tile_sums.binding(), output.binding())?;
+    recorder.run()?;
+    Ok(device.download_range(&tile_sums, tile_count, 1)?[0])
+}
