@@ -73,7 +73,11 @@ pub struct AdapterReport {
 
 impl fmt::Display for AdapterReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} ({}, {}, {} {})", self.name, self.backend, self.device_type, self.driver, self.driver_info)
+        write!(
+            f,
+            "{} ({}, {}, {} {})",
+            self.name, self.backend, self.device_type, self.driver, self.driver_info
+        )
     }
 }
 

@@ -50,7 +50,8 @@ impl GpuDevice {
     /// [`Error::LimitExceeded`] before anything is allocated, [`Error::OutOfMemory`] when the driver refuses.
     pub fn zeroed<T: Pod>(&self, len: usize) -> Result<GpuBuffer<T>> {
         let limit = self.report().limits.buffer_bytes;
-        let bytes = (len as u64).saturating_mul(size_of::<T>() as u64).max(1).checked_next_multiple_of(GRANULE);
+        let bytes =
+            (len as u64).saturating_mul(size_of::<T>() as u64).max(1).checked_next_multiple_of(GRANULE);
         let bytes = bytes.unwrap_or(u64::MAX);
         if bytes > limit {
             return Err(Error::limit(format!("bytes of one buffer on {}", self.report().name), bytes, limit));
@@ -58,7 +59,12 @@ impl GpuDevice {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let raw = self.scoped(bytes, |device| {
             let label = Some(std::any::type_name::<T>());
-            device.create_buffer(&wgpu::BufferDescriptor { label, size: bytes, usage, mapped_at_creation: false })
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label,
+                size: bytes,
+                usage,
+                mapped_at_creation: false,
+            })
         })?;
         Ok(GpuBuffer { raw, owner: self.shared.serial, len, element: PhantomData })
     }
@@ -125,7 +131,12 @@ impl GpuDevice {
         let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
         let label = Some("copy for the host");
         let staging = self.scoped(bytes, |device| {
-            device.create_buffer(&wgpu::BufferDescriptor { label, size: bytes, usage, mapped_at_creation: false })
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label,
+                size: bytes,
+                usage,
+                mapped_at_creation: false,
+            })
         })?;
         let (send, receive) = mpsc::channel();
         let commands = self.scoped(bytes, |device| {

@@ -84,15 +84,20 @@ impl GpuDevice {
         let (adapter, mut report) = (&adapters[index], reports[index].clone());
         let mode = match options.mode {
             Some(Mode::Strict) if !report.strict => {
-                return Err(Error::Unsupported(format!("strict mode on {report}: it takes no SPIR-V; use portable")));
+                return Err(Error::Unsupported(format!(
+                    "strict mode on {report}: it takes no SPIR-V; use portable"
+                )));
             }
             Some(mode) => mode,
             None if report.strict => Mode::Strict,
             None => Mode::Portable,
         };
         report.limits.buffer_bytes = report.limits.buffer_bytes.min(options.max_buffer_bytes);
-        report.limits.storage_binding_bytes =
-            report.limits.storage_binding_bytes.min(options.max_storage_binding_bytes).min(report.limits.buffer_bytes);
+        report.limits.storage_binding_bytes = report
+            .limits
+            .storage_binding_bytes
+            .min(options.max_storage_binding_bytes)
+            .min(report.limits.buffer_bytes);
         report.limits.workgroups_per_dimension =
             report.limits.workgroups_per_dimension.min(options.max_workgroups_per_dimension);
 

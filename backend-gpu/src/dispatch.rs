@@ -66,7 +66,9 @@ impl<'a> Recorder<'a> {
             if binding.access == Access::Uniform {
                 let bytes = bytemuck::bytes_of(params);
                 if binding.name != PARAMS || binding.min_bytes != bytes.len() as u64 {
-                    return Err(self.misuse(label, &format!("uniform {} of {} bytes", binding.name, bytes.len())));
+                    return Err(
+                        self.misuse(label, &format!("uniform {} of {} bytes", binding.name, bytes.len()))
+                    );
                 }
                 params_range = self.push_params(bytes);
                 continue;
@@ -111,7 +113,8 @@ impl<'a> Recorder<'a> {
             self.device.shared.queue.write_buffer(&params, 0, &self.params);
         }
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
+        let mut pass =
+            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
         for step in &self.steps {
             pass.push_debug_group(step.label);
             pass.set_pipeline(&step.pipeline.raw);
@@ -150,7 +153,8 @@ impl<'a> Recorder<'a> {
 impl Step<'_> {
     fn bind_group(&self, device: &wgpu::Device, params: &wgpu::Buffer) -> wgpu::BindGroup {
         let (offset, size) = self.params;
-        let uniform = self.pipeline.interface.bindings.iter().find(|binding| binding.access == Access::Uniform);
+        let uniform =
+            self.pipeline.interface.bindings.iter().find(|binding| binding.access == Access::Uniform);
         let uniform = uniform.map(|binding| wgpu::BindGroupEntry {
             binding: binding.binding,
             resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {

@@ -7,6 +7,7 @@
 //! Nothing panics: a missing adapter, a limit, a lost device are [`twinlight_core::Error`]s, and no wait is unbounded.
 
 pub mod adapter;
+pub mod backend;
 pub mod buffer;
 pub mod device;
 pub mod dispatch;
@@ -17,6 +18,7 @@ pub mod source;
 pub mod strict;
 
 pub use adapter::{AdapterLimits, AdapterReport, AdapterSelector, adapters};
+pub use backend::{GpuBackend, GpuScene};
 pub use buffer::GpuBuffer;
 pub use device::{DeviceOptions, GpuDevice};
 pub use strict::Mode;

@@ -97,7 +97,8 @@ impl GpuDevice {
 
     fn expect_fit(&self, interface: &Interface) -> Result<()> {
         let limits = self.report().limits;
-        let storage = interface.bindings.iter().filter(|binding| binding.access != Access::Uniform).count() as u64;
+        let storage =
+            interface.bindings.iter().filter(|binding| binding.access != Access::Uniform).count() as u64;
         let invocations = interface.workgroup_size.iter().map(|&size| u64::from(size)).product();
         let needs = [
             ("storage buffers", storage, u64::from(limits.storage_buffers)),

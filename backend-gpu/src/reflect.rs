@@ -67,7 +67,9 @@ pub fn interface(checked: &CheckedModule, entry_point: &str) -> Result<Interface
             }
             naga::AddressSpace::Private => continue,
             naga::AddressSpace::Uniform => Access::Uniform,
-            naga::AddressSpace::Storage { access } if access.contains(naga::StorageAccess::STORE) => Access::ReadWrite,
+            naga::AddressSpace::Storage { access } if access.contains(naga::StorageAccess::STORE) => {
+                Access::ReadWrite
+            }
             naga::AddressSpace::Storage { .. } => Access::Read,
             _ => return Err(Error::Internal(format!("{entry_point}: {name} is not a buffer"))),
         };

@@ -66,20 +66,21 @@ impl KernelSource {
     /// [`Error::Internal`] with file, line and column: the sources are part of this crate, so a bad one is its defect.
     pub fn check(&self) -> Result<CheckedModule> {
         let text = self.join();
-        let place = |span: Option<naga::Span>| {
-            let range = span.and_then(|span| span.to_range());
+        let place = |range: Option<std::ops::Range<usize>>| {
             range.map_or_else(|| self.stem.to_owned(), |range| self.locate(range.start))
         };
         let module = naga::front::wgsl::parse_str(&text).map_err(|error| {
-            let span = error.labels().next().map(|(span, _)| span);
-            Error::Internal(format!("{}: {}", place(span), error.message()))
+            let place = place(error.labels().find_map(|(span, _)| span.to_range()));
+            Error::Internal(format!("{place}: {}", error.message()))
         })?;
         // No capability beyond WGSL's core: the sources must run on every adapter.
-        let mut validator =
-            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+        let mut validator = naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            naga::valid::Capabilities::empty(),
+        );
         let info = validator.validate(&module).map_err(|error| {
-            let span = error.spans().next().map(|(span, _)| *span);
-            Error::Internal(format!("{}: {}", place(span), chain(error.as_inner())))
+            let place = place(error.spans().find_map(|(span, _)| span.to_range()));
+            Error::Internal(format!("{place}: {}", chain(error.as_inner())))
         })?;
         Ok(CheckedModule { module, info, text })
     }

@@ -2,10 +2,10 @@
 
 use crate::{Check, Target, expect_same};
 use libtest_mimic::Failed;
+use std::time::Duration;
 use twinlight_backend_gpu::kernels::{scan, sort};
 use twinlight_backend_gpu::source::{KernelSource, WgslFile};
 use twinlight_backend_gpu::{DeviceOptions, GpuDevice};
-use std::time::Duration;
 use twinlight_core::Error;
 
 pub const CHECKS: &[(&str, Check)] = &[
@@ -51,7 +51,8 @@ fn large_buffer_is_refused(target: &Target) -> Result<(), Failed> {
 }
 
 fn large_binding_is_refused(target: &Target) -> Result<(), Failed> {
-    let device = GpuDevice::open(&DeviceOptions { max_storage_binding_bytes: 1 << 20, ..target.options.clone() })?;
+    let device =
+        GpuDevice::open(&DeviceOptions { max_storage_binding_bytes: 1 << 20, ..target.options.clone() })?;
     let scan_of = |len: usize| {
         let input = device.zeroed::<u32>(len)?;
         scan::run(&device, &input, &mut device.zeroed::<u32>(len)?)

@@ -20,7 +20,8 @@ pub struct Target {
 
 impl Target {
     fn device(&self) -> Result<&GpuDevice, Failed> {
-        let opened = self.shared.get_or_init(|| GpuDevice::open(&self.options).map_err(|error| error.to_string()));
+        let opened =
+            self.shared.get_or_init(|| GpuDevice::open(&self.options).map_err(|error| error.to_string()));
         opened.as_ref().map_err(|error| Failed::from(error.as_str()))
     }
 }
@@ -29,8 +30,7 @@ type Check = fn(&Target) -> Result<(), Failed>;
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
-    let checks: Vec<(&str, Check)> =
-        [device::CHECKS, scan::CHECKS, sort::CHECKS, strict::CHECKS].concat();
+    let checks: Vec<(&str, Check)> = [device::CHECKS, scan::CHECKS, sort::CHECKS, strict::CHECKS].concat();
     let reports = adapters();
     let mut trials = Vec::new();
     for (index, report) in reports.iter().enumerate() {

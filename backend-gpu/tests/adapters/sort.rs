@@ -32,7 +32,8 @@ fn wide_keys(target: &Target) -> Result<(), Failed> {
 
 fn equal_keys(target: &Target) -> Result<(), Failed> {
     for distinct in [1, 2, 17] {
-        let keys: Vec<u32> = numbers(distinct, 10_000).iter().map(|number| (number % distinct) as u32).collect();
+        let keys: Vec<u32> =
+            numbers(distinct, 10_000).iter().map(|number| (number % distinct) as u32).collect();
         compare(target.device()?, &keys)?;
     }
     Ok(())

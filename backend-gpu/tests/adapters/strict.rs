@@ -54,7 +54,9 @@ fn expressions(target: &Target) -> Result<(), Failed> {
     match device.mode() {
         Mode::Strict if any => Err(format!("of {COUNT} results differ {differing:?}").into()),
         // Were it to agree, the input or the comparison would be too weak to show what strict mode is for.
-        Mode::Portable if !any && device.report().device_type == "cpu" => Err("nothing differs: weak test".into()),
+        Mode::Portable if !any && device.report().device_type == "cpu" => {
+            Err("nothing differs: weak test".into())
+        }
         _ => Ok(()),
     }
 }
