@@ -179,11 +179,16 @@ impl Backend for CpuBackend {
 
     fn trace_paths(
         &self,
-        _scene: &CpuScene,
-        _params: &TracePathsParams,
-        _film: &mut CpuBuffer<FilmTexel>,
+        scene: &CpuScene,
+        params: &TracePathsParams,
+        film: &mut CpuBuffer<FilmTexel>,
     ) -> Result<()> {
-        Err(Error::Unsupported("trace_paths on the cpu backend".into()))
+        let film = film.as_mut_slice();
+        params.check(film.len())?;
+        self.run("trace_paths", || {
+            kernels::trace_paths::trace_paths(scene.data(), params, film);
+            Ok(())
+        })
     }
 }
 

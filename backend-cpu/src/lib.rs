@@ -24,6 +24,7 @@ mod isa;
 mod kernels;
 mod parallel;
 mod scene;
+mod tracer;
 
 pub use backend::CpuBackend;
 pub use buffer::CpuBuffer;

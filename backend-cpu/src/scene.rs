@@ -6,6 +6,7 @@ use twinlight_core::bvh::{Bvh, MAX_DEPTH};
 use twinlight_core::scene::{
     CompiledScene, EnvironmentHeader, LightRecord, MaterialRecord, Triangle, TriangleAttributes,
 };
+use twinlight_core::transport::SceneView;
 use twinlight_core::{Error, Result};
 
 /// A resident scene. Clones share the data.
@@ -29,6 +30,20 @@ pub struct SceneData {
     pub environment: EnvironmentHeader,
     /// The hierarchy over `triangles`.
     pub bvh: Bvh,
+}
+
+impl SceneData {
+    /// The records as the shared transport functions take them.
+    pub(crate) fn view(&self) -> SceneView<'_> {
+        SceneView {
+            triangles: &self.triangles,
+            attributes: &self.attributes,
+            materials: &self.materials,
+            lights: &self.lights,
+            words: &self.words,
+            environment: &self.environment,
+        }
+    }
 }
 
 impl CpuScene {

@@ -3,3 +3,4 @@
 //! [`post`] compares, tone-maps and colours finished images; it knows no backend.
 
 pub mod post;
+pub mod reference;

@@ -3,3 +3,4 @@
 pub(crate) mod scan;
 pub(crate) mod sort;
 pub(crate) mod trace;
+pub(crate) mod trace_paths;

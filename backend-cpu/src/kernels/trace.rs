@@ -7,6 +7,7 @@
 
 use crate::parallel::fill;
 use crate::scene::SceneData;
+use crate::tracer::{SlotHit, Tracer};
 use glam::Vec3;
 use twinlight_core::bvh::MAX_DEPTH;
 use twinlight_core::kernels::trace::{Hit, NO_HIT, Ray};
@@ -41,6 +42,35 @@ pub(crate) fn closest(scene: &SceneData, ray: &Ray) -> Hit {
         Some(best.t)
     });
     best
+}
+
+/// The binary hierarchy as the path tracer uses it.
+pub(crate) struct BinaryTracer<'a>(pub(crate) &'a SceneData);
+
+impl Tracer for BinaryTracer<'_> {
+    fn closest(&self, origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> SlotHit {
+        let mut best = SlotHit::miss(t_max);
+        let mut best_id = NO_HIT;
+        let frame = ray_frame(origin, direction);
+        visit_leaves(self.0, &frame, t_max, |slots| {
+            for slot in slots {
+                let t = &self.0.triangles[slot];
+                let [p0, p1, p2] = [t.p0, t.p1, t.p2].map(Vec3::from);
+                if let Some(met) = triangle(&frame, p0, p1, p2, t_min, best.t)
+                    && (met.t < best.t || t.id < best_id)
+                {
+                    best = SlotHit { t: met.t, u: met.u, v: met.v, slot: slot as u32 };
+                    best_id = t.id;
+                }
+            }
+            Some(best.t)
+        });
+        best
+    }
+
+    fn occluded(&self, origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> bool {
+        any(self.0, &Ray { origin: origin.to_array(), t_min, direction: direction.to_array(), t_max })
+    }
 }
 
 /// Whether a ray meets any triangle.

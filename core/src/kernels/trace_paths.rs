@@ -27,6 +27,7 @@
 //! *Sources.* Kajiya 1986; Veach 1997 §9.2 (balance heuristic) and §10.
 
 use crate::accuracy::Accuracy;
+use crate::error::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 
 /// Paths branch on float comparisons.
@@ -99,6 +100,50 @@ pub struct TracePathsParams {
     pub film_exponent: i32,
     /// Quanta per unit of squared luminance, as a power of two.
     pub moment_exponent: i32,
+}
+
+/// Pairs of sample dimensions per vertex: direction, light point, (light, lobe), environment texel, roulette.
+pub const PAIRS_PER_VERTEX: u32 = 5;
+
+/// Vertices after which roulette must be running, so that every path ends.
+pub const LATEST_ROULETTE: u32 = 1024;
+
+/// Roulette never lets a path survive with more than this probability, so that paths between perfect mirrors end.
+pub const MAX_SURVIVAL: f32 = 0.95;
+
+impl TracePathsParams {
+    /// Checks what a kernel relies on.
+    ///
+    /// # Errors
+    /// [`Error::InvalidInput`] naming the parameter, when pixels leave the image, the film has another size, sample
+    /// indices overflow, the sampler is unknown or paths might never end.
+    pub fn check(&self, film_len: usize) -> Result<()> {
+        let invalid = |what: String| Err(Error::invalid("trace_paths", what));
+        let pixels = u64::from(self.width) * u64::from(self.height);
+        if pixels != film_len as u64 {
+            return invalid(format!(
+                "film of {film_len} pixels for an image of {}x{}",
+                self.width, self.height
+            ));
+        }
+        let end = u64::from(self.pixel_begin) + u64::from(self.pixel_count);
+        if end > pixels {
+            return invalid(format!("pixels {}..{end} of {pixels}", self.pixel_begin));
+        }
+        if self.sample_begin.checked_add(self.sample_count).is_none() {
+            return invalid(format!("{} samples from {} overflow", self.sample_count, self.sample_begin));
+        }
+        if self.sampler > SAMPLER_INDEPENDENT {
+            return invalid(format!("sampler {}", self.sampler));
+        }
+        if self.max_bounces > LATEST_ROULETTE && self.roulette_begin > LATEST_ROULETTE {
+            return invalid(format!(
+                "roulette from vertex {} on with {} bounces; needs roulette at {LATEST_ROULETTE} or before",
+                self.roulette_begin, self.max_bounces
+            ));
+        }
+        Ok(())
+    }
 }
 
 /// One pixel's sums. All 64-bit sums are (low, high) words.

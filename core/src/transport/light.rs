@@ -10,7 +10,7 @@ use crate::math::trig::sin_cos_turns;
 use crate::math::vector::{basis, normalized, normalized_any, to_world};
 use crate::scene::{
     EMITS_BOTH_SIDES, LIGHT_DIRECTIONAL, LIGHT_ENVIRONMENT, LIGHT_POINT, LIGHT_SPHERE, LIGHT_SPOT,
-    LIGHT_TRIANGLE, LightRecord,
+    LIGHT_TRIANGLE, LightRecord, NONE,
 };
 use glam::Vec3;
 
@@ -74,6 +74,50 @@ pub fn sphere_light_pdf(light: &LightRecord, from: Vec3) -> f32 {
 #[inline(always)]
 pub fn triangle_light_pdf(light: &LightRecord, distance: f32, cosine: f32) -> f32 {
     light.select_pdf * ((distance * distance) / (light.area * cosine))
+}
+
+/// The nearest sphere light on a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SphereHit {
+    /// Index of the light, or [`NONE`].
+    pub light: u32,
+    /// Ray parameter; the ray's `t_max` when nothing is met.
+    pub t: f32,
+    /// Whether the inside is met, which is black.
+    pub inside: bool,
+}
+
+/// The nearest sphere light in 0 < t < `t_max`. Linear in their number: they are few, and exact.
+#[inline(always)]
+pub fn nearest_sphere(scene: &SceneView<'_>, origin: Vec3, direction: Vec3, t_max: f32) -> SphereHit {
+    let mut nearest = SphereHit { light: NONE, t: t_max, inside: false };
+    for index in 0..scene.environment.sphere_count {
+        let light = &scene.lights[index as usize];
+        if let Some((near, far)) = sphere(origin, direction, Vec3::from(light.position), light.radius) {
+            let inside = !(near > 0.0);
+            let t = if inside { far } else { near };
+            if t > 0.0 && t < nearest.t {
+                nearest = SphereHit { light: index, t, inside };
+            }
+        }
+    }
+    nearest
+}
+
+/// Whether a sphere light other than `skip` lies in 0 < t < `t_max`.
+#[inline(always)]
+pub fn spheres_occlude(scene: &SceneView<'_>, origin: Vec3, direction: Vec3, t_max: f32, skip: u32) -> bool {
+    let mut occluded = false;
+    for index in 0..scene.environment.sphere_count {
+        let light = &scene.lights[index as usize];
+        if index != skip
+            && let Some((near, far)) = sphere(origin, direction, Vec3::from(light.position), light.radius)
+        {
+            let t = if near > 0.0 { near } else { far };
+            occluded = occluded || (t > 0.0 && t < t_max);
+        }
+    }
+    occluded
 }
 
 #[inline(always)]

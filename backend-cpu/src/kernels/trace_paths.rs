@@ -1,0 +1,353 @@
+// kernel family: trace_paths
+// contract core/src/kernels/trace_paths.rs
+// cpu backend-cpu/src/kernels/trace_paths.rs
+// gpu backend-gpu/src/kernels/trace_paths.wgsl
+// oracle conformance/src/oracle/trace_paths.rs
+//! Rust twin of `trace_paths`: one path after another, so that a pixel's rays stay in cache.
+
+use super::trace::BinaryTracer;
+use crate::scene::SceneData;
+use crate::tracer::Tracer;
+use glam::Vec3;
+use rayon::prelude::*;
+use twinlight_core::kernels::trace_paths::{
+    FilmTexel, MAX_SURVIVAL, PAIRS_PER_VERTEX, SAMPLER_SOBOL, TracePathsParams,
+};
+use twinlight_core::math::fixed::{OUT_OF_RANGE, Words, add_saturating, from_float};
+use twinlight_core::math::hash::{mix_pair, to_unit};
+use twinlight_core::math::sobol::{independent_pair, sobol_pair};
+use twinlight_core::math::vector::{basis, to_world};
+use twinlight_core::scene::{
+    EMITS_BOTH_SIDES, MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_OPAQUE, MaterialRecord, NONE,
+};
+use twinlight_core::transport::SceneView;
+use twinlight_core::transport::bsdf::{
+    BsdfSample, evaluate, sample_dielectric, sample_mirror, sample_opaque,
+};
+use twinlight_core::transport::environment::environment_from;
+use twinlight_core::transport::light::{
+    FAR, SHADOW_REACH, nearest_sphere, sample_light, select_light, sphere_light_pdf, spheres_occlude,
+    triangle_light_pdf,
+};
+use twinlight_core::transport::offset::offset_origin;
+use twinlight_core::transport::surface::{Surface, camera_direction, surface_at};
+
+/// Light of one sample, split by the number of scattering vertices.
+#[derive(Debug, Clone, Copy)]
+struct PathLight {
+    /// Scattered at most once.
+    direct: Vec3,
+    /// Scattered more often.
+    indirect: Vec3,
+}
+
+/// A path under construction.
+struct Path {
+    origin: Vec3,
+    direction: Vec3,
+    throughput: Vec3,
+    /// Density of the last scattering direction; 0 after the camera, mirrors and glass.
+    pdf: f32,
+    /// Scattering vertices so far.
+    vertices: u32,
+    light: PathLight,
+}
+
+/// What the samples of a pixel share.
+struct Sampler {
+    kind: u32,
+    stream: u32,
+    sample: u32,
+}
+
+impl Sampler {
+    #[inline(always)]
+    fn pair(&self, pair: u32) -> [u32; 2] {
+        if self.kind == SAMPLER_SOBOL {
+            sobol_pair(self.stream, self.sample, pair)
+        } else {
+            independent_pair(self.stream, self.sample, pair)
+        }
+    }
+}
+
+/// Pixels per task: enough to hide the cost of a task, few enough to balance rows of uneven depth.
+const TASK_PIXELS: usize = 64;
+
+/// Adds the samples of `params`, which has been checked, to `film`.
+pub(crate) fn trace_paths(scene: &SceneData, params: &TracePathsParams, film: &mut [FilmTexel]) {
+    let begin = params.pixel_begin as usize;
+    let pixels = &mut film[begin..begin + params.pixel_count as usize];
+    let view = scene.view();
+    pixels.par_chunks_mut(TASK_PIXELS).enumerate().for_each(|(task, texels)| {
+        let first = (begin + task * TASK_PIXELS) as u32;
+        trace_pixels(&BinaryTracer(scene), &view, params, first, texels);
+    });
+}
+
+/// Adds the samples of `params` for the pixels from `first_pixel` on to `film`, one texel per pixel.
+#[inline(always)]
+fn trace_pixels<T: Tracer>(
+    tracer: &T,
+    scene: &SceneView<'_>,
+    params: &TracePathsParams,
+    first_pixel: u32,
+    film: &mut [FilmTexel],
+) {
+    for (i, texel) in film.iter_mut().enumerate() {
+        let pixel = first_pixel + i as u32;
+        for sample in params.sample_begin..params.sample_begin + params.sample_count {
+            let sampler = Sampler { kind: params.sampler, stream: mix_pair(params.seed, pixel), sample };
+            let light = trace_path(tracer, scene, params, pixel, &sampler);
+            add_sample(texel, light, params);
+        }
+    }
+}
+
+/// One path from the camera.
+#[inline(always)]
+fn trace_path<T: Tracer>(
+    tracer: &T,
+    scene: &SceneView<'_>,
+    params: &TracePathsParams,
+    pixel: u32,
+    sampler: &Sampler,
+) -> PathLight {
+    // [1] sample: a point of the pixel
+    let [jx, jy] = sampler.pair(0);
+    let x = (pixel % params.width) as f32 + to_unit(jx);
+    let y = (pixel / params.width) as f32 + to_unit(jy);
+    let mut path = Path {
+        origin: Vec3::from(params.camera.position),
+        direction: camera_direction(&params.camera, x, y),
+        throughput: Vec3::ONE,
+        pdf: 0.0,
+        vertices: 0,
+        light: PathLight { direct: Vec3::ZERO, indirect: Vec3::ZERO },
+    };
+    loop {
+        // [2] vertex: what the ray meets, and its emission
+        let hit = tracer.closest(path.origin, path.direction, 0.0, FAR);
+        let sphere = nearest_sphere(scene, path.origin, path.direction, hit.t);
+        if sphere.light != NONE {
+            if !sphere.inside {
+                add_sphere_emission(&mut path, scene, sphere.light);
+            }
+            return path.light;
+        }
+        if hit.slot == NONE {
+            add_environment(&mut path, scene);
+            return path.light;
+        }
+        let surface = surface_at(scene, hit.slot, hit.u, hit.v, path.direction);
+        let material = &scene.materials[surface.material as usize];
+        add_surface_emission(&mut path, scene, &surface, material, hit.t);
+        if path.vertices == params.max_bounces {
+            return path.light;
+        }
+        let base = 1 + path.vertices * PAIRS_PER_VERTEX;
+        let (tangent, bitangent) = basis(surface.shading_normal);
+        let to_viewer = -path.direction;
+        let wo = Vec3::new(
+            to_viewer.dot(tangent),
+            to_viewer.dot(bitangent),
+            to_viewer.dot(surface.shading_normal),
+        );
+        let [choose_light, choose_lobe] = sampler.pair(base + 2);
+        // [3] direct light
+        if material.kind == MATERIAL_OPAQUE && scene.environment.light_count > 0 {
+            let frame = (tangent, bitangent, surface.shading_normal);
+            add_direct_light(&mut path, tracer, scene, &surface, frame, wo, sampler, base, choose_light);
+        }
+        // [4] scatter
+        let [u, v] = sampler.pair(base);
+        let scattered = scatter(material, &surface, wo, to_unit(choose_lobe), to_unit(u), to_unit(v));
+        if scattered.direction == Vec3::ZERO {
+            return path.light;
+        }
+        let direction = to_world(tangent, bitangent, surface.shading_normal, scattered.direction);
+        let leaves = direction.dot(surface.geometric_normal);
+        if material.kind != MATERIAL_DIELECTRIC && !(leaves > 0.0) {
+            return path.light;
+        }
+        path.origin = offset_origin(surface.position, surface.error, surface.geometric_normal, direction);
+        path.direction = direction;
+        path.throughput *= scattered.weight;
+        path.pdf = scattered.pdf;
+        path.vertices += 1;
+        // [5] roulette
+        if !survives(&mut path, params, sampler, base + 4) {
+            return path.light;
+        }
+    }
+}
+
+/// Adds light that has been scattered `order` times.
+#[inline(always)]
+fn add_light(light: &mut PathLight, order: u32, radiance: Vec3) {
+    if order <= 1 {
+        light.direct += radiance;
+    } else {
+        light.indirect += radiance;
+    }
+}
+
+/// Balance-heuristic weight of a technique with density `own` against one with density `other`.
+#[inline(always)]
+fn balance(own: f32, other: f32) -> f32 {
+    own / (own + other)
+}
+
+#[inline(always)]
+fn add_sphere_emission(path: &mut Path, scene: &SceneView<'_>, index: u32) {
+    let record = &scene.lights[index as usize];
+    let mut weight = 1.0;
+    if path.pdf > 0.0 {
+        weight = balance(path.pdf, sphere_light_pdf(record, path.origin));
+    }
+    let radiance = path.throughput * Vec3::from(record.emission) * weight;
+    add_light(&mut path.light, path.vertices, radiance);
+}
+
+#[inline(always)]
+fn add_environment(path: &mut Path, scene: &SceneView<'_>) {
+    if scene.environment.light == NONE {
+        return;
+    }
+    let value = environment_from(scene, path.direction);
+    let mut weight = 1.0;
+    if path.pdf > 0.0 {
+        let select = scene.lights[scene.environment.light as usize].select_pdf;
+        weight = balance(path.pdf, select * value.pdf);
+    }
+    let radiance = path.throughput * value.radiance * weight;
+    add_light(&mut path.light, path.vertices, radiance);
+}
+
+#[inline(always)]
+fn add_surface_emission(
+    path: &mut Path,
+    scene: &SceneView<'_>,
+    surface: &Surface,
+    material: &MaterialRecord,
+    distance: f32,
+) {
+    if surface.light == NONE || !(surface.front || material.flags & EMITS_BOTH_SIDES != 0) {
+        return;
+    }
+    let mut weight = 1.0;
+    if path.pdf > 0.0 {
+        let cosine = -(surface.geometric_normal.dot(path.direction));
+        let record = &scene.lights[surface.light as usize];
+        if cosine > 0.0 {
+            weight = balance(path.pdf, triangle_light_pdf(record, distance, cosine));
+        }
+    }
+    let radiance = path.throughput * Vec3::from(material.emission) * weight;
+    add_light(&mut path.light, path.vertices, radiance);
+}
+
+/// One light, one point on it, one shadow ray.
+#[inline(always)]
+fn add_direct_light<T: Tracer>(
+    path: &mut Path,
+    tracer: &T,
+    scene: &SceneView<'_>,
+    surface: &Surface,
+    frame: (Vec3, Vec3, Vec3),
+    wo: Vec3,
+    sampler: &Sampler,
+    base: u32,
+    choose_light: u32,
+) {
+    let index = select_light(scene, choose_light);
+    let mut texel = [0, 0];
+    if index == scene.environment.light {
+        texel = sampler.pair(base + 3);
+    }
+    let [u, v] = sampler.pair(base + 1);
+    let light = sample_light(scene, index, surface.position, to_unit(u), to_unit(v), texel);
+    if !(light.pdf > 0.0) || !(light.direction.dot(surface.geometric_normal) > 0.0) {
+        return;
+    }
+    let wi =
+        Vec3::new(light.direction.dot(frame.0), light.direction.dot(frame.1), light.direction.dot(frame.2));
+    let material = &scene.materials[surface.material as usize];
+    let value = evaluate(material, surface.albedo, wo, wi);
+    let unshadowed = path.throughput * value.f_cos * light.emission;
+    if !(unshadowed.x > 0.0 || unshadowed.y > 0.0 || unshadowed.z > 0.0) {
+        return;
+    }
+    let origin = offset_origin(surface.position, surface.error, surface.geometric_normal, light.direction);
+    let mut direction = light.direction;
+    let mut reach = FAR;
+    if !light.infinite {
+        direction = light.target - origin;
+        reach = SHADOW_REACH;
+    }
+    if tracer.occluded(origin, direction, 0.0, reach)
+        || spheres_occlude(scene, origin, direction, reach, light.light)
+    {
+        return;
+    }
+    let mut weight = 1.0 / light.pdf;
+    if !light.delta {
+        weight = 1.0 / (light.pdf + value.pdf);
+    }
+    let radiance = unshadowed * weight;
+    add_light(&mut path.light, path.vertices + 1, radiance);
+}
+
+#[inline(always)]
+fn scatter(material: &MaterialRecord, surface: &Surface, wo: Vec3, lobe: f32, u: f32, v: f32) -> BsdfSample {
+    if material.kind == MATERIAL_MIRROR {
+        return sample_mirror(material, wo);
+    }
+    if material.kind == MATERIAL_DIELECTRIC {
+        return sample_dielectric(material, surface.front, wo, lobe);
+    }
+    sample_opaque(material, surface.albedo, wo, lobe, u, v)
+}
+
+/// Whether the path goes on; dims its throughput by the survival probability.
+#[inline(always)]
+fn survives(path: &mut Path, params: &TracePathsParams, sampler: &Sampler, pair: u32) -> bool {
+    let t = path.throughput;
+    let xy = if t.x > t.y { t.x } else { t.y };
+    let largest = if xy > t.z { xy } else { t.z };
+    if !(largest > 0.0) {
+        return false;
+    }
+    if path.vertices < params.roulette_begin {
+        return true;
+    }
+    let survival = if largest < MAX_SURVIVAL { largest } else { MAX_SURVIVAL };
+    if !(to_unit(sampler.pair(pair)[0]) < survival) {
+        return false;
+    }
+    let inverse = 1.0 / survival;
+    path.throughput = t * inverse;
+    true
+}
+
+/// Adds one sample to a pixel's sums, or counts it as rejected.
+#[inline(always)]
+fn add_sample(texel: &mut FilmTexel, light: PathLight, params: &TracePathsParams) {
+    let exponent = params.film_exponent;
+    let direct = [light.direct.x, light.direct.y, light.direct.z].map(|x| from_float(x, exponent));
+    let indirect = [light.indirect.x, light.indirect.y, light.indirect.z].map(|x| from_float(x, exponent));
+    let sum = light.direct + light.indirect;
+    let luminance = (0.2126 * sum.x + 0.7152 * sum.y) + 0.0722 * sum.z;
+    let squared = from_float(luminance * luminance, params.moment_exponent);
+    let out_of_range = |w: &Words| *w == OUT_OF_RANGE;
+    if direct.iter().chain(&indirect).any(out_of_range) {
+        texel.rejected += 1;
+        return;
+    }
+    for c in 0..3 {
+        texel.direct[c] = add_saturating(texel.direct[c], direct[c]);
+        texel.indirect[c] = add_saturating(texel.indirect[c], indirect[c]);
+    }
+    texel.luminance_squared = add_saturating(texel.luminance_squared, squared);
+    texel.samples += 1;
+}
