@@ -1,1 +1,4 @@
 //! twinlight
+
+#[cfg(feature = "io")]
+pub mod io;

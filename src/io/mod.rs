@@ -1,0 +1,6 @@
+//! Files: scenes and pictures in, pictures out.
+
+mod atomic;
+pub mod image;
+
+pub use atomic::write_file;
