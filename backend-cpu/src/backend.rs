@@ -1,8 +1,8 @@
 //! [`CpuBackend`]: checks the caller's lengths, then runs a kernel in a thread pool and turns a panic into an error.
 
 use crate::buffer::{CpuBuffer, try_copy, try_zeroed};
-use crate::isa::{Isa, processor};
-use crate::{CpuScene, kernels};
+use crate::simd::Isa;
+use crate::{CpuScene, kernels, processor, simd};
 use bytemuck::Pod;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::any::Any;
@@ -34,7 +34,7 @@ impl Default for CpuBackend {
 impl CpuBackend {
     /// Uses the rayon pool of the calling thread: the caller's own, or the global one.
     pub fn new() -> Self {
-        Self { pool: None, isa: Isa::detect() }
+        Self { pool: None, isa: simd::detect() }
     }
 
     /// Starts a pool of `threads` threads.
@@ -54,7 +54,13 @@ impl CpuBackend {
             .thread_name(|i| format!("twinlight-{i}"))
             .build()
             .map_err(|e| Error::BackendUnavailable { tried: format!("cpu with {threads} threads: {e}") })?;
-        Ok(Self { pool: Some(Arc::new(pool)), isa: Isa::detect() })
+        Ok(Self { pool: Some(Arc::new(pool)), isa: simd::detect() })
+    }
+
+    /// The same backend on the instructions of `isa`, if this machine has them. The bits stay the same.
+    #[must_use]
+    pub fn with_isa(self, isa: Isa) -> Self {
+        Self { isa: if isa.is_available() { isa } else { self.isa }, ..self }
     }
 
     /// Threads that kernels called from here run on.
@@ -95,8 +101,8 @@ impl Backend for CpuBackend {
     type Scene = CpuScene;
 
     fn info(&self) -> BackendInfo {
-        let driver = format!("{}, {} threads", self.isa.name(), self.threads());
-        BackendInfo { kind: "cpu", device: processor(), driver, strict: true }
+        let driver = format!("{} {}, {} threads", std::env::consts::ARCH, self.isa.name(), self.threads());
+        BackendInfo { kind: "cpu", device: processor::name(), driver, strict: true }
     }
 
     fn upload<T: Pod + Send + Sync>(&self, data: &[T]) -> Result<CpuBuffer<T>> {
@@ -149,7 +155,7 @@ impl Backend for CpuBackend {
         let (rays, hits) = (rays.as_slice(), hits.as_mut_slice());
         check_equal("trace_closest hits", hits.len(), rays.len())?;
         self.run("trace_closest", || {
-            kernels::trace::trace_closest(scene.data(), rays, hits);
+            kernels::trace::trace_closest(self.isa, scene.data(), rays, hits);
             Ok(())
         })
     }
@@ -163,18 +169,23 @@ impl Backend for CpuBackend {
         let (rays, occluded) = (rays.as_slice(), occluded.as_mut_slice());
         check_equal("trace_any occluded", occluded.len(), rays.len())?;
         self.run("trace_any", || {
-            kernels::trace::trace_any(scene.data(), rays, occluded);
+            kernels::trace::trace_any(self.isa, scene.data(), rays, occluded);
             Ok(())
         })
     }
 
     fn shade_primary(
         &self,
-        _scene: &CpuScene,
-        _params: &ShadePrimaryParams,
-        _gbuffer: &mut CpuBuffer<GBufferTexel>,
+        scene: &CpuScene,
+        params: &ShadePrimaryParams,
+        gbuffer: &mut CpuBuffer<GBufferTexel>,
     ) -> Result<()> {
-        Err(Error::Unsupported("shade_primary on the cpu backend".into()))
+        let gbuffer = gbuffer.as_mut_slice();
+        check_equal("shade_primary gbuffer", gbuffer.len(), params.width as usize * params.height as usize)?;
+        self.run("shade_primary", || {
+            kernels::shade_primary::shade_primary(self.isa, scene.data(), params, gbuffer);
+            Ok(())
+        })
     }
 
     fn trace_paths(
@@ -186,7 +197,7 @@ impl Backend for CpuBackend {
         let film = film.as_mut_slice();
         params.check(film.len())?;
         self.run("trace_paths", || {
-            kernels::trace_paths::trace_paths(scene.data(), params, film);
+            kernels::trace_paths::trace_paths(self.isa, scene.data(), params, film);
             Ok(())
         })
     }

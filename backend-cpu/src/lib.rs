@@ -20,10 +20,12 @@
 
 mod backend;
 mod buffer;
-mod isa;
+pub mod bvh8;
 mod kernels;
 mod parallel;
+mod processor;
 mod scene;
+pub mod simd;
 mod tracer;
 
 pub use backend::CpuBackend;

@@ -1,19 +1,19 @@
 //! A scene in host memory.
 
 use crate::buffer::try_copy;
+use crate::bvh8::WideBvh;
 use std::sync::Arc;
-use twinlight_core::bvh::{Bvh, MAX_DEPTH};
+use twinlight_core::Result;
 use twinlight_core::scene::{
     CompiledScene, EnvironmentHeader, LightRecord, MaterialRecord, Triangle, TriangleAttributes,
 };
 use twinlight_core::transport::SceneView;
-use twinlight_core::{Error, Result};
 
 /// A resident scene. Clones share the data.
 #[derive(Debug, Clone)]
 pub struct CpuScene(Arc<SceneData>);
 
-/// What kernels read: the fields of [`CompiledScene`] of the same names.
+/// What kernels read: the fields of [`CompiledScene`] of the same names, and an eight-wide hierarchy.
 #[derive(Debug)]
 pub struct SceneData {
     /// In leaf order of `bvh`.
@@ -29,7 +29,7 @@ pub struct SceneData {
     /// Where the environment is, and light counts.
     pub environment: EnvironmentHeader,
     /// The hierarchy over `triangles`.
-    pub bvh: Bvh,
+    pub bvh: WideBvh,
 }
 
 impl SceneData {
@@ -50,11 +50,8 @@ impl CpuScene {
     /// Copies what kernels need.
     ///
     /// # Errors
-    /// [`Error::LimitExceeded`] for a hierarchy deeper than the traversal stacks; [`Error::OutOfMemory`].
+    /// [`twinlight_core::Error::OutOfMemory`].
     pub(crate) fn new(scene: &CompiledScene) -> Result<Self> {
-        if scene.bvh.depth > MAX_DEPTH {
-            return Err(Error::limit("depth of the hierarchy", scene.bvh.depth.into(), MAX_DEPTH.into()));
-        }
         Ok(Self(Arc::new(SceneData {
             triangles: try_copy(&scene.triangles)?,
             attributes: try_copy(&scene.attributes)?,
@@ -62,7 +59,7 @@ impl CpuScene {
             lights: try_copy(&scene.lights)?,
             words: try_copy(&scene.words)?,
             environment: scene.environment,
-            bvh: Bvh { nodes: try_copy(&scene.bvh.nodes)?, depth: scene.bvh.depth },
+            bvh: WideBvh::new(scene),
         })))
     }
 

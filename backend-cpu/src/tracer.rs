@@ -1,27 +1,8 @@
 //! What the kernels that follow rays need of an acceleration structure.
 
+use crate::bvh8::{SlotHit, WideBvh};
+use crate::simd::Width;
 use glam::Vec3;
-use twinlight_core::scene::NONE;
-
-/// A closest hit, by slot.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SlotHit {
-    /// Ray parameter.
-    pub t: f32,
-    /// Weight of the second vertex.
-    pub u: f32,
-    /// Weight of the third vertex.
-    pub v: f32,
-    /// Index into the scene's triangles (leaf order), or [`NONE`].
-    pub slot: u32,
-}
-
-impl SlotHit {
-    /// Nothing met up to `t_max`.
-    pub fn miss(t_max: f32) -> Self {
-        Self { t: t_max, u: 0.0, v: 0.0, slot: NONE }
-    }
-}
 
 /// Finds hits as `core/src/kernels/trace.rs` defines them.
 pub trait Tracer {
@@ -30,4 +11,19 @@ pub trait Tracer {
 
     /// Whether there is any hit in `t_min < t ≤ t_max`.
     fn occluded(&self, origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> bool;
+}
+
+/// The eight-wide hierarchy at one vector width.
+pub struct WideTracer<'a, W>(pub &'a WideBvh, pub W);
+
+impl<W: Width> Tracer for WideTracer<'_, W> {
+    #[inline(always)]
+    fn closest(&self, origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> SlotHit {
+        self.0.closest(self.1, origin, direction, t_min, t_max)
+    }
+
+    #[inline(always)]
+    fn occluded(&self, origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> bool {
+        self.0.occluded(self.1, origin, direction, t_min, t_max)
+    }
 }

@@ -1,6 +1,7 @@
 //! The CPU twins. Contracts: [`twinlight_core::kernels`].
 
 pub(crate) mod scan;
+pub(crate) mod shade_primary;
 pub(crate) mod sort;
 pub(crate) mod trace;
 pub(crate) mod trace_paths;

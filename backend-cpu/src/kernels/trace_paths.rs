@@ -5,9 +5,9 @@
 // oracle conformance/src/oracle/trace_paths.rs
 //! Rust twin of `trace_paths`: one path after another, so that a pixel's rays stay in cache.
 
-use super::trace::BinaryTracer;
 use crate::scene::SceneData;
-use crate::tracer::Tracer;
+use crate::simd::{Isa, Kernel, Width, dispatch};
+use crate::tracer::{Tracer, WideTracer};
 use glam::Vec3;
 use rayon::prelude::*;
 use twinlight_core::kernels::trace_paths::{
@@ -75,14 +75,31 @@ impl Sampler {
 const TASK_PIXELS: usize = 64;
 
 /// Adds the samples of `params`, which has been checked, to `film`.
-pub(crate) fn trace_paths(scene: &SceneData, params: &TracePathsParams, film: &mut [FilmTexel]) {
+pub(crate) fn trace_paths(isa: Isa, scene: &SceneData, params: &TracePathsParams, film: &mut [FilmTexel]) {
     let begin = params.pixel_begin as usize;
     let pixels = &mut film[begin..begin + params.pixel_count as usize];
-    let view = scene.view();
     pixels.par_chunks_mut(TASK_PIXELS).enumerate().for_each(|(task, texels)| {
-        let first = (begin + task * TASK_PIXELS) as u32;
-        trace_pixels(&BinaryTracer(scene), &view, params, first, texels);
+        let first_pixel = (begin + task * TASK_PIXELS) as u32;
+        dispatch(isa, Task { scene, params, first_pixel, texels });
     });
+}
+
+/// The pixels of one task.
+struct Task<'a> {
+    scene: &'a SceneData,
+    params: &'a TracePathsParams,
+    first_pixel: u32,
+    texels: &'a mut [FilmTexel],
+}
+
+impl Kernel for Task<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<W: Width>(self, width: W) {
+        let tracer = WideTracer(&self.scene.bvh, width);
+        trace_pixels(&tracer, &self.scene.view(), self.params, self.first_pixel, self.texels);
+    }
 }
 
 /// Adds the samples of `params` for the pixels from `first_pixel` on to `film`, one texel per pixel.

@@ -1,0 +1,277 @@
+//! Closest hit and any hit.
+
+use super::node::{LEAF, NodeRay};
+use super::pack::{PACK, PackHits, PackRay};
+use super::{MAX_STACK, NO_SLOT, Node, Pack, SlotHit, Visits, WideBvh};
+use crate::simd::{Lanes, Width};
+use glam::Vec3;
+use std::mem::MaybeUninit;
+use twinlight_core::transport::intersect::ray_frame;
+
+/// Children still to visit: the entry parameter's bits above, the reference below. Entries are not negative, so the
+/// order of the integers is the order of the entries.
+struct Stack {
+    entries: [MaybeUninit<u64>; MAX_STACK],
+    len: usize,
+}
+
+impl Stack {
+    #[inline(always)]
+    fn new() -> Self {
+        Stack { entries: [MaybeUninit::uninit(); MAX_STACK], len: 0 }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, entry: u64) {
+        debug_assert!(self.len < MAX_STACK);
+        // SAFETY: a node's children are pushed after the node left the stack, so per level seven remain at most, and
+        // construction bounds the levels (`MAX_LEVELS`).
+        unsafe { self.entries.get_unchecked_mut(self.len) }.write(entry);
+        self.len += 1;
+    }
+
+    #[inline(always)]
+    fn get(&self, index: usize) -> u64 {
+        debug_assert!(index < self.len);
+        // SAFETY: entries below `len` were written by `push`.
+        unsafe { self.entries.get_unchecked(index).assume_init() }
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<u64> {
+        if self.len == 0 {
+            return None;
+        }
+        let entry = self.get(self.len - 1);
+        self.len -= 1;
+        Some(entry)
+    }
+
+    /// Moves the last entry down to where it belongs in the descending run that starts at `base`.
+    #[inline(always)]
+    fn sink_last(&mut self, base: usize) {
+        let mut at = self.len - 1;
+        let entry = self.get(at);
+        while at > base && self.get(at - 1) < entry {
+            let smaller = self.get(at - 1);
+            // SAFETY: `at` is below `len`, which is at most the array's length.
+            unsafe { self.entries.get_unchecked_mut(at) }.write(smaller);
+            at -= 1;
+        }
+        // SAFETY: as above.
+        unsafe { self.entries.get_unchecked_mut(at) }.write(entry);
+    }
+}
+
+/// The best hit so far.
+struct Best {
+    t: f32,
+    u: f32,
+    v: f32,
+    /// pack · PACK + lane.
+    lane: u32,
+}
+
+impl WideBvh {
+    #[inline(always)]
+    fn node(&self, reference: u32) -> &Node {
+        debug_assert!((reference as usize) < self.nodes.len());
+        // SAFETY: construction writes only references to nodes that exist, and 0 always does.
+        unsafe { self.nodes.get_unchecked(reference as usize) }
+    }
+
+    #[inline(always)]
+    fn pack(&self, reference: u32) -> (u32, &Pack) {
+        let index = reference & !LEAF;
+        debug_assert!((index as usize) < self.packs.len());
+        // SAFETY: construction writes only references to packs that exist.
+        (index, unsafe { self.packs.get_unchecked(index as usize) })
+    }
+
+    /// The closest triangle with `t_min < t ≤ t_max`; of several at the same t, the one with the lowest id.
+    #[inline(always)]
+    pub fn closest<W: Width>(
+        &self,
+        width: W,
+        origin: Vec3,
+        direction: Vec3,
+        t_min: f32,
+        t_max: f32,
+    ) -> SlotHit {
+        self.closest_counting(width, origin, direction, t_min, t_max, |_| {})
+    }
+
+    /// [`WideBvh::closest`], telling `count` of every node (true) and pack (false) it visits.
+    #[inline(always)]
+    fn closest_counting<W: Width>(
+        &self,
+        width: W,
+        origin: Vec3,
+        direction: Vec3,
+        t_min: f32,
+        t_max: f32,
+        mut count: impl FnMut(bool),
+    ) -> SlotHit {
+        let frame = ray_frame(origin, direction);
+        let node_ray = NodeRay::new(width, origin, frame.inverse);
+        let pack_ray = PackRay::new(width, &frame, t_min);
+        let mut best = Best { t: t_max, u: 0.0, v: 0.0, lane: NO_SLOT };
+        let mut stack = Stack::new();
+        let mut current = 0_u32;
+        loop {
+            if current & LEAF == 0 {
+                count(true);
+                let node = self.node(current);
+                let (mask, enter) = node_ray.meet(width, node, best.t);
+                if let Some(child) = nearest_child(&mut stack, node, mask, enter) {
+                    current = child;
+                    continue;
+                }
+            } else {
+                count(false);
+                let (index, pack) = self.pack(current);
+                if let Some(hits) = pack_ray.meet(width, pack, best.t) {
+                    self.improve(&mut best, index, &hits);
+                }
+            }
+            current = loop {
+                let Some(entry) = stack.pop() else {
+                    return self.slot_hit(&best);
+                };
+                if f32::from_bits((entry >> 32) as u32) <= best.t {
+                    break entry as u32;
+                }
+            };
+        }
+    }
+
+    /// Whether any triangle has `t_min < t ≤ t_max`.
+    #[inline(always)]
+    pub fn occluded<W: Width>(
+        &self,
+        width: W,
+        origin: Vec3,
+        direction: Vec3,
+        t_min: f32,
+        t_max: f32,
+    ) -> bool {
+        let frame = ray_frame(origin, direction);
+        let node_ray = NodeRay::new(width, origin, frame.inverse);
+        let pack_ray = PackRay::new(width, &frame, t_min);
+        let mut stack = Stack::new();
+        let mut current = 0_u32;
+        loop {
+            if current & LEAF == 0 {
+                let node = self.node(current);
+                let (mask, enter) = node_ray.meet(width, node, t_max);
+                if let Some(child) = nearest_child(&mut stack, node, mask, enter) {
+                    current = child;
+                    continue;
+                }
+            } else {
+                let (_, pack) = self.pack(current);
+                if pack_ray.meet(width, pack, t_max).is_some_and(|hits| hits.mask != 0) {
+                    return true;
+                }
+            }
+            match stack.pop() {
+                Some(entry) => current = entry as u32,
+                None => return false,
+            }
+        }
+    }
+
+    /// Takes over what is nearer, or as near with a lower id.
+    #[inline(always)]
+    fn improve<W: Width>(&self, best: &mut Best, pack: u32, hits: &PackHits<W>) {
+        let mut mask = hits.mask;
+        if mask == 0 {
+            return;
+        }
+        let ts = hits.t.to_array();
+        let [vs, ws] = hits.edges.map(Lanes::to_array);
+        let determinants = hits.determinant.to_array();
+        while mask != 0 {
+            let i = mask.trailing_zeros() as usize & (PACK - 1);
+            mask &= mask - 1;
+            let lane = pack * PACK as u32 + i as u32;
+            let t = ts[i];
+            let tie = t == best.t && (best.lane == NO_SLOT || self.id(lane) < self.id(best.lane));
+            if t < best.t || tie {
+                *best = Best { t, u: vs[i] / determinants[i], v: ws[i] / determinants[i], lane };
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn id(&self, lane: u32) -> u32 {
+        self.ids[lane as usize]
+    }
+
+    #[inline(always)]
+    fn slot_hit(&self, best: &Best) -> SlotHit {
+        let slot = self.slots.get(best.lane as usize).copied().unwrap_or(NO_SLOT);
+        SlotHit { t: best.t, u: best.u, v: best.v, slot }
+    }
+
+    /// What finding the closest hit of one ray takes.
+    pub fn count_visits<W: Width>(
+        &self,
+        width: W,
+        origin: Vec3,
+        direction: Vec3,
+        t_min: f32,
+        t_max: f32,
+    ) -> Visits {
+        let mut visits = Visits::default();
+        self.closest_counting(width, origin, direction, t_min, t_max, |node| {
+            if node {
+                visits.nodes += 1;
+            } else {
+                visits.packs += 1;
+            }
+        });
+        visits
+    }
+}
+
+/// The met child that the ray enters first; the others go on the stack, the farthest lowest.
+#[inline(always)]
+fn nearest_child<L: Lanes<Array = [f32; 8]>>(
+    stack: &mut Stack,
+    node: &Node,
+    mut mask: u32,
+    enter: L,
+) -> Option<u32> {
+    if mask == 0 {
+        return None;
+    }
+    let enters = enter.to_array();
+    let mut next = || {
+        let i = mask.trailing_zeros() as usize & 7;
+        mask &= mask - 1;
+        (u64::from(enters[i].to_bits()) << 32 | u64::from(node.children[i]), mask != 0)
+    };
+    let (first, more) = next();
+    if !more {
+        return Some(first as u32);
+    }
+    let (second, more) = next();
+    let (nearer, farther) = if first < second { (first, second) } else { (second, first) };
+    if !more {
+        stack.push(farther);
+        return Some(nearer as u32);
+    }
+    let base = stack.len;
+    stack.push(farther);
+    stack.push(nearer);
+    loop {
+        let (entry, more) = next();
+        stack.push(entry);
+        stack.sink_last(base);
+        if !more {
+            break;
+        }
+    }
+    stack.pop().map(|entry| entry as u32)
+}

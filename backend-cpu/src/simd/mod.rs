@@ -1,0 +1,137 @@
+//! Vectors of 4 and 8 `f32` lanes with the same bits at every width, and the choice of instruction set at run time.
+//!
+//! A [`Width`] is a token: holding one proves that its instructions exist on this machine, so every operation is safe.
+//! All of it is `#[inline(always)]`: the generic code takes the instruction set of the function it ends up in, which
+//! [`dispatch`] provides. No operation fuses or reassociates; `minimum` and `maximum` are the comparison forms of
+//! `twinlight_core::transport::intersect::{smaller, larger}`, which is also what `minps` and `maxps` compute.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+mod pair;
+mod portable;
+#[cfg(target_arch = "x86_64")]
+mod sse2;
+
+#[cfg(target_arch = "x86_64")]
+pub use avx2::Avx2;
+pub use portable::Portable;
+#[cfg(target_arch = "x86_64")]
+pub use sse2::Sse2;
+
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
+
+/// One truth value per lane.
+pub trait LaneMask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> {
+    /// Bit i is lane i.
+    fn bits(self) -> u32;
+}
+
+/// A vector of `f32`.
+pub trait Lanes:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    /// Proof that the instructions exist.
+    type Token: Copy;
+    /// `[f32; LANES]`.
+    type Array: Copy;
+    /// Result of a comparison.
+    type Mask: LaneMask;
+
+    /// The same value in every lane.
+    fn splat(token: Self::Token, value: f32) -> Self;
+    /// Lanes from memory.
+    fn load(token: Self::Token, from: &Self::Array) -> Self;
+    /// Lanes to memory.
+    fn to_array(self) -> Self::Array;
+    /// `self < other ? self : other`.
+    fn minimum(self, other: Self) -> Self;
+    /// `self > other ? self : other`.
+    fn maximum(self, other: Self) -> Self;
+    /// `self < other`; false where either is NaN.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self <= other`; false where either is NaN.
+    fn le(self, other: Self) -> Self::Mask;
+}
+
+/// An instruction set.
+pub trait Width: Copy + Send + Sync {
+    /// Four lanes.
+    type F4: Lanes<Token = Self, Array = [f32; 4]>;
+    /// Eight lanes.
+    type F8: Lanes<Token = Self, Array = [f32; 8]>;
+
+    /// Asks for the cache line at `address`; no effect on results.
+    fn prefetch<T>(self, address: *const T);
+}
+
+/// Instruction sets that can be asked for by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Isa {
+    /// Arrays, whatever the compiler makes of them.
+    Portable,
+    /// Two vectors of four lanes; every x86-64 has it.
+    Sse2,
+    /// One vector of eight lanes, with BMI1, BMI2, LZCNT and POPCNT.
+    Avx2,
+}
+
+impl Isa {
+    /// All of them, narrowest first.
+    pub const ALL: [Isa; 3] = [Isa::Portable, Isa::Sse2, Isa::Avx2];
+
+    /// Whether this machine has it.
+    #[must_use]
+    pub fn is_available(self) -> bool {
+        match self {
+            Isa::Portable => true,
+            Isa::Sse2 => cfg!(target_arch = "x86_64"),
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx2 => Avx2::detect().is_some(),
+            #[cfg(not(target_arch = "x86_64"))]
+            Isa::Avx2 => false,
+        }
+    }
+
+    /// Lower-case name, for reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Isa::Portable => "portable",
+            Isa::Sse2 => "sse2",
+            Isa::Avx2 => "avx2",
+        }
+    }
+}
+
+/// The widest instruction set of this machine.
+#[must_use]
+pub fn detect() -> Isa {
+    Isa::ALL.into_iter().rev().find(|isa| isa.is_available()).unwrap_or(Isa::Portable)
+}
+
+/// Work that can run at any width. `run` must be `#[inline(always)]`, as must what it calls on its hot path: that is
+/// how it takes on the instruction set. Closures handed to other threads don't, so [`dispatch`] once per chunk of work.
+pub trait Kernel {
+    /// What it returns.
+    type Output;
+    /// Does the work.
+    fn run<W: Width>(self, width: W) -> Self::Output;
+}
+
+/// Runs `kernel` with the instructions of `isa`, or the portable ones where the machine lacks it: the same bits.
+#[inline]
+pub fn dispatch<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
+    #[cfg(target_arch = "x86_64")]
+    match isa {
+        Isa::Portable => {}
+        Isa::Sse2 => return kernel.run(Sse2),
+        Isa::Avx2 => {
+            if let Some(width) = Avx2::detect() {
+                return avx2::run(width, kernel);
+            }
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = isa;
+    kernel.run(Portable)
+}
