@@ -1,6 +1,21 @@
 //! Files: scenes and pictures in, pictures out.
+//!
+//! Scene files are hostile until read: nothing outside the scene's folder is opened ([`resolve`]), nothing larger than
+//! the limits is allocated, nothing panics, and errors name file, line, column and value. Every reader has an entry
+//! `parse(bytes, name, files, options)` that needs no file system.
 
 mod atomic;
+pub mod builtin;
+mod complete;
 pub mod image;
+mod load;
+pub mod obj;
+mod options;
+pub mod ply;
+pub mod resolve;
+mod text;
 
 pub use atomic::write_file;
+pub use complete::complete;
+pub use load::load;
+pub use options::LoadOptions;

@@ -1,0 +1,67 @@
+//! Cameras and lights for scenes that come without.
+
+use glam::DVec3;
+use twinlight_core::scene::{COORDINATE_LIMIT, Camera, Light, Scene};
+
+/// Side of the made-up light, over its distance from what it lights: large enough for soft shadows.
+const LIGHT_SIZE: f64 = 0.2;
+
+/// Gives a scene without a camera one that frames it, and a scene without light a rectangle beside the camera, each with
+/// a notice.
+///
+/// The rectangle lies in the plane of the eye, just above it, and faces along the view axis: the eye stands in free
+/// space, so the light does too, whether the scene is a single object seen from outside or a closed room seen from inside;
+/// and no camera ray can meet it. Its radiance makes a white surface in the middle of the view about as bright as
+/// radiance 1.
+pub fn complete(scene: &mut Scene) {
+    let bounds = finite_bounds(scene);
+    if scene.camera.is_none() {
+        let (lo, hi) = bounds.unwrap_or((DVec3::NEG_ONE, DVec3::ONE));
+        scene.camera = Some(Camera::framing((lo, hi)));
+        scene.notices.push("no camera in the scene: one that frames it is used".into());
+    }
+    if scene.has_light() || bounds.is_none() {
+        return;
+    }
+    if let (Some(camera), Some(bounds)) = (scene.camera, bounds)
+        && let Some(light) = beside_camera(&camera, bounds)
+    {
+        scene.lights.push(light);
+        scene.notices.push("no light in the scene: a rectangle light just above the camera is used".into());
+    }
+}
+
+fn beside_camera(camera: &Camera, (lo, hi): (DVec3, DVec3)) -> Option<Light> {
+    let [eye, target, up] = [camera.position, camera.target, camera.up].map(DVec3::from);
+    let forward = (target - eye).try_normalize()?;
+    let right = forward.cross(up).try_normalize()?;
+    let up = right.cross(forward);
+    // A target may be any point on the axis; what is seen is about as far as the scene is large.
+    let distance = (target - eye).length().min((hi - lo).length()).max((hi - lo).length() * 0.25);
+    let side = LIGHT_SIZE * distance;
+    let corner = eye - right * (side * 0.5);
+    let narrow = |v: DVec3| v.as_vec3().to_array();
+    // A white surface at that distance facing the light reflects L·side²/(π·distance²).
+    let radiance = (std::f64::consts::PI / (LIGHT_SIZE * LIGHT_SIZE)) as f32;
+    // The front of a rectangle is along edge_u × edge_v, and up × right is forward.
+    Some(Light::Rectangle {
+        corner: narrow(corner),
+        edge_u: narrow(up * side),
+        edge_v: narrow(right * side),
+        radiance: [radiance; 3],
+    })
+}
+
+/// Bounds of the vertices that are numbers within the limit: a lenient reader lets others pass.
+fn finite_bounds(scene: &Scene) -> Option<(DVec3, DVec3)> {
+    let mut bounds: Option<(DVec3, DVec3)> = None;
+    for instance in &scene.instances {
+        let Some(mesh) = scene.meshes.get(instance.mesh as usize) else { continue };
+        let points = mesh.positions.iter().map(|&p| instance.transform.point(p));
+        for p in points.filter(|p| p.is_finite() && p.abs().max_element() <= COORDINATE_LIMIT) {
+            let (lo, hi) = bounds.unwrap_or((p, p));
+            bounds = Some((lo.min(p), hi.max(p)));
+        }
+    }
+    bounds
+}
