@@ -1,7 +1,7 @@
 //! From a name to a scene.
 
 use super::resolve::{Files, Resolver, read_limited};
-use super::{LoadOptions, text};
+use super::{LoadOptions, builtin, text};
 use std::path::Path;
 use twinlight_core::scene::Scene;
 use twinlight_core::{Error, Result};
@@ -12,11 +12,15 @@ type Parse = fn(&[u8], &str, &dyn Files, &LoadOptions) -> Result<Scene>;
 /// Extensions and their readers.
 const READERS: [(&str, Parse); 2] = [("obj", super::obj::parse), ("ply", super::ply::parse)];
 
-/// Loads a scene file by its extension.
+/// Loads `builtin:NAME`, or a scene file by its extension. What a file leaves open stays open: see
+/// [`super::complete`].
 ///
 /// # Errors
-/// [`Error::Unsupported`] for an unknown extension, [`Error::Io`], and those of the reader.
+/// [`Error::InvalidInput`] for an unknown builtin name, [`Error::Unsupported`] for an unknown extension, [`Error::Io`], and those of the reader.
 pub fn load(source: &str, options: &LoadOptions) -> Result<Scene> {
+    if let Some(name) = source.strip_prefix(builtin::PREFIX) {
+        return builtin::load(name);
+    }
     let path = Path::new(source);
     let parse = reader_of(source)?;
     let bytes = read_limited(path, options.max_file_bytes)?;
