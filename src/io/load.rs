@@ -31,7 +31,8 @@ pub fn load(source: &str, options: &LoadOptions) -> Result<Scene> {
 
 /// The reader for a file name.
 fn reader_of(name: &str) -> Result<Parse> {
-    let extension = Path::new(name).extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let extension =
+        Path::new(name).extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     if let Some((_, parse)) = READERS.iter().find(|(known, _)| *known == extension) {
         return Ok(*parse);
     }

@@ -159,7 +159,9 @@ fn canonical(path: &Path) -> Result<PathBuf> {
 
 /// Refuses URLs, and turns Windows separators into `/`.
 fn checked(path: &str) -> Result<PathBuf> {
-    let refuse = |what: &str| Err(Error::invalid(format!("reference '{}'", super::text::shown(path.as_bytes())), what));
+    let refuse = |what: &str| {
+        Err(Error::invalid(format!("reference '{}'", super::text::shown(path.as_bytes())), what))
+    };
     if path.is_empty() {
         return refuse("names no file");
     }
@@ -209,7 +211,10 @@ pub fn percent_decoded(uri: &str) -> Result<String> {
         let digits = tail.first_chunk::<2>().map(|d| d.map(|b| char::from(b).to_digit(16)));
         let Some([Some(high), Some(low)]) = digits else {
             let at = uri.len() - tail.len() - 1;
-            return Err(Error::invalid(place(), format!("'%' at byte {at} is not followed by two hexadecimal digits")));
+            return Err(Error::invalid(
+                place(),
+                format!("'%' at byte {at} is not followed by two hexadecimal digits"),
+            ));
         };
         bytes.push((high * 16 + low) as u8);
         rest = &tail[2..];
@@ -233,7 +238,8 @@ impl MemoryFiles {
     fn locate(&self, path: &str) -> Result<String> {
         let refuse = |what: &str| Err(Error::invalid(format!("reference '{path}'"), what));
         let relative = checked(path)?;
-        let mut parts: Vec<String> = self.base.split('/').filter(|p| !p.is_empty()).map(String::from).collect();
+        let mut parts: Vec<String> =
+            self.base.split('/').filter(|p| !p.is_empty()).map(String::from).collect();
         for component in relative.components() {
             match component {
                 Component::Normal(part) => parts.push(part.to_string_lossy().into_owned()),

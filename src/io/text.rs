@@ -14,14 +14,6 @@ pub(crate) fn shown(bytes: &[u8]) -> String {
     if characters.next().is_some() { format!("{excerpt}…") } else { excerpt }
 }
 
-/// `file:line:column` of a byte offset; columns count bytes from 1.
-pub(crate) fn position(name: &str, text: &str, offset: usize) -> String {
-    let before = &text.as_bytes()[..offset.min(text.len())];
-    let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
-    let column = before.iter().rev().take_while(|&&b| b != b'\n').count() + 1;
-    format!("{name}:{line}:{column}")
-}
-
 /// ` (did you mean 'x'?)` for the candidate nearest to `word`, or nothing when none is near.
 pub(crate) fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let word: Vec<char> = word.chars().take(EXCERPT).collect();
@@ -120,7 +112,9 @@ pub(crate) fn number(token: Token<'_>, what: &str, name: &str, lenient: bool) ->
     let parsed = std::str::from_utf8(token.bytes).ok().and_then(|t| t.parse::<f32>().ok());
     match parsed {
         Some(x) if x.is_finite() || lenient => Ok(x),
-        Some(_) => Err(token.error(name, format!("{what} '{}' is not a finite 32-bit number", token.shown()))),
+        Some(_) => {
+            Err(token.error(name, format!("{what} '{}' is not a finite 32-bit number", token.shown())))
+        }
         None => {
             let comma = if token.bytes.contains(&b',') { "; the decimal mark is a point" } else { "" };
             Err(token.error(name, format!("{what} '{}' is not a number{comma}", token.shown())))
@@ -151,11 +145,5 @@ mod tests {
         let line = Line { bytes: b"  v 1\t2 # note\r", number: 7 };
         let columns: Vec<_> = line.tokens().map(|t| (t.shown(), t.column)).collect();
         assert_eq!(columns, [("v".into(), 3), ("1".into(), 5), ("2".into(), 7)]);
-    }
-
-    #[test]
-    fn positions_count_from_one() {
-        assert_eq!(position("f", "ab\ncd", 4), "f:2:2");
-        assert_eq!(position("f", "", 9), "f:1:1");
     }
 }

@@ -6,19 +6,35 @@
 //! well: three numbers per vertex, faces of one kind per group, groups and materials by number.
 
 use super::library::Library;
-use crate::io::text::{self, Line, Token};
 use crate::io::LoadOptions;
+use crate::io::text::{self, Line, Token};
 use std::collections::BTreeMap;
 use twinlight_core::{Error, Result};
 
 /// Statements that draw something other than faces.
 const NOT_DRAWN: [&str; 16] = [
-    "l", "p", "vp", "curv", "curv2", "surf", "cstype", "deg", "bmat", "step", "parm", "trim", "hole", "scrv", "sp", "end",
+    "l", "p", "vp", "curv", "curv2", "surf", "cstype", "deg", "bmat", "step", "parm", "trim", "hole", "scrv",
+    "sp", "end",
 ];
 /// Statements without effect here.
 const WITHOUT_EFFECT: [&str; 17] = [
-    "s", "mg", "con", "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib", "shadow_obj", "trace_obj", "ctech",
-    "stech", "call", "csh", "res", "cdc",
+    "s",
+    "mg",
+    "con",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "usemap",
+    "maplib",
+    "shadow_obj",
+    "trace_obj",
+    "ctech",
+    "stech",
+    "call",
+    "csh",
+    "res",
+    "cdc",
 ];
 const USED: [&str; 8] = ["v", "vt", "vn", "f", "o", "g", "mtllib", "usemtl"];
 
@@ -35,7 +51,12 @@ pub(super) struct Checked {
 type FaceKind = (bool, bool);
 
 /// Checks the whole text; material libraries are read on the way.
-pub(super) fn check(bytes: &[u8], name: &str, options: &LoadOptions, library: &mut Library<'_>) -> Result<Checked> {
+pub(super) fn check(
+    bytes: &[u8],
+    name: &str,
+    options: &LoadOptions,
+    library: &mut Library<'_>,
+) -> Result<Checked> {
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         return Err(Error::invalid(format!("{name}:1:1"), "the file is UTF-16; save it as UTF-8"));
     }
@@ -51,10 +72,10 @@ pub(super) fn check(bytes: &[u8], name: &str, options: &LoadOptions, library: &m
         material: None,
         written_material: None,
     };
-    pass.checked.text.try_reserve(bytes.len() + bytes.len() / 8).map_err(|_| Error::OutOfMemory {
-        device: "host".into(),
-        bytes: bytes.len() as u64,
-    })?;
+    pass.checked
+        .text
+        .try_reserve(bytes.len() + bytes.len() / 8)
+        .map_err(|_| Error::OutOfMemory { device: "host".into(), bytes: bytes.len() as u64 })?;
     pass.checked.text.extend_from_slice(b"mtllib numbered\n");
     let mut joined = Vec::new();
     for line in text::lines(bytes) {
@@ -179,11 +200,7 @@ impl Pass<'_> {
         Ok(())
     }
 
-    fn face<'t>(
-        &mut self,
-        tokens: impl Iterator<Item = Token<'t>>,
-        library: &mut Library<'_>,
-    ) -> Result<()> {
+    fn face<'t>(&mut self, tokens: impl Iterator<Item = Token<'t>>, library: &mut Library<'_>) -> Result<()> {
         // The line is written last: what precedes it depends on all its corners.
         let mut corners: Vec<[Option<usize>; 3]> = Vec::with_capacity(4);
         for token in tokens {
@@ -275,7 +292,8 @@ impl Pass<'_> {
     ) -> Result<()> {
         for label in labels {
             let Some(token) = tokens.next() else {
-                let what = format!("'{}' needs {} numbers: its {label} is missing", key.shown(), labels.len());
+                let what =
+                    format!("'{}' needs {} numbers: its {label} is missing", key.shown(), labels.len());
                 return Err(key.error(self.name, what));
             };
             text::number(token, label, self.name, self.options.limits.lenient)?;
@@ -295,10 +313,15 @@ impl Pass<'_> {
 
     fn finish(mut self, library: &mut Library<'_>) -> Result<Checked> {
         if !self.recognised {
-            let hint = self.left_out.unknown.into_iter().next().map(|n| format!(" ({n})")).unwrap_or_default();
-            return Err(Error::invalid(self.name, format!("holds no OBJ statement: is this an OBJ file?{hint}")));
+            let hint =
+                self.left_out.unknown.into_iter().next().map(|n| format!(" ({n})")).unwrap_or_default();
+            return Err(Error::invalid(
+                self.name,
+                format!("holds no OBJ statement: is this an OBJ file?{hint}"),
+            ));
         }
-        let LeftOut { colors, small_faces, partial_faces, statements, unknown, unknown_count } = self.left_out;
+        let LeftOut { colors, small_faces, partial_faces, statements, unknown, unknown_count } =
+            self.left_out;
         let mut counted = |count: usize, what: &str| {
             if count > 0 {
                 library.notices.push(format!("{}: {count} {what}", self.name));
@@ -306,7 +329,10 @@ impl Pass<'_> {
         };
         counted(colors, "vertex colours ignored");
         counted(small_faces, "faces with fewer than 3 corners left out");
-        counted(partial_faces, "faces whose corners don't all have texture coordinates or normals: those dropped");
+        counted(
+            partial_faces,
+            "faces whose corners don't all have texture coordinates or normals: those dropped",
+        );
         for (statement, count) in statements {
             counted(count, &format!("'{statement}' statements left out: only faces are drawn"));
         }
@@ -345,13 +371,21 @@ fn corner(token: Token<'_>, counts: [usize; 3], name: &str) -> Result<[Option<us
         }
         let Some(index) = integer(part) else {
             let (part, of) = (text::shown(part), OF[i]);
-            return Err(token.error(name, format!("{of} index '{part}' in '{}' is not an integer", token.shown())));
+            return Err(
+                token.error(name, format!("{of} index '{part}' in '{}' is not an integer", token.shown()))
+            );
         };
         let count = counts[i] as i64;
         let resolved = if index < 0 { count + 1 + index } else { index };
         if !(1..=count).contains(&resolved) {
-            let reason = if index == 0 { "indices count from 1".into() } else { format!("{count} are defined so far") };
-            return Err(token.error(name, format!("{} index {index} in '{}': {reason}", OF[i], token.shown())));
+            let reason = if index == 0 {
+                "indices count from 1".into()
+            } else {
+                format!("{count} are defined so far")
+            };
+            return Err(
+                token.error(name, format!("{} index {index} in '{}': {reason}", OF[i], token.shown()))
+            );
         }
         indices[i] = Some(resolved as usize);
     }

@@ -2,9 +2,9 @@
 
 use super::material::{self, Adjustments};
 use super::mtl::{self, MtlMaterial};
+use crate::io::LoadOptions;
 use crate::io::resolve::Files;
 use crate::io::text::{self, Token};
-use crate::io::LoadOptions;
 use std::collections::BTreeMap;
 use twinlight_core::scene::{Material, Texture};
 use twinlight_core::{Error, Result};
@@ -61,7 +61,13 @@ impl<'a> Library<'a> {
         self.fetch_from(self.files, name, place, what)
     }
 
-    fn fetch_from(&mut self, files: &dyn Files, name: &str, place: &str, what: &str) -> Result<Option<Vec<u8>>> {
+    fn fetch_from(
+        &mut self,
+        files: &dyn Files,
+        name: &str,
+        place: &str,
+        what: &str,
+    ) -> Result<Option<Vec<u8>>> {
         match files.read_path(name) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(Error::Io { source, .. }) => {
@@ -87,7 +93,10 @@ impl<'a> Library<'a> {
         let index = self.materials.len() as u32;
         self.materials.push(material);
         if self.by_name.insert(mtl.name.clone(), index).is_some() {
-            self.notices.push(format!("{}: material '{}' is defined again; the later one counts", mtl.place, mtl.name));
+            self.notices.push(format!(
+                "{}: material '{}' is defined again; the later one counts",
+                mtl.place, mtl.name
+            ));
         }
         Ok(())
     }
@@ -145,7 +154,9 @@ impl<'a> Library<'a> {
             self.notices.push(format!("{obj}: {scaled} {what}"));
         }
         for name in opaque_instead.into_iter().take(super::MAX_NOTICES) {
-            self.notices.push(format!("{obj}: material '{name}' is transparent without an index of refraction: drawn opaque"));
+            self.notices.push(format!(
+                "{obj}: material '{name}' is transparent without an index of refraction: drawn opaque"
+            ));
         }
         if self.materials.iter().any(|m| m.emits_both_sides) {
             let what = "emissive faces emit from both sides, since winding can't be relied on in OBJ files";

@@ -44,12 +44,8 @@ pub fn parse(bytes: &[u8], name: &str, files: &dyn Files, options: &LoadOptions)
 
 /// Runs tobj on checked text, whose materials are named by their numbers.
 fn triangulate(text: &[u8], materials: usize, name: &str) -> Result<Vec<tobj::Model>> {
-    let options = tobj::LoadOptions {
-        single_index: true,
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-    };
+    let options =
+        tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
     let numbered = |_: &std::path::Path| {
         let named = |i: usize| tobj::Material { name: i.to_string(), ..tobj::Material::default() };
         Ok(((0..materials).map(named).collect(), (0..materials).map(|i| (i.to_string(), i)).collect()))

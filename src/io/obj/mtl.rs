@@ -1,15 +1,44 @@
 //! MTL: material libraries of OBJ files. What the keys mean here is in [`super::material`].
 
-use crate::io::text::{self, Line, Token};
 use crate::io::LoadOptions;
+use crate::io::text::{self, Line, Token};
 use std::collections::BTreeSet;
 use twinlight_core::Result;
 
 /// Keys of MTL and its physically based extension that have no effect here.
 const WITHOUT_EFFECT: [&str; 32] = [
-    "Ka", "Tf", "Tn", "Km", "Kt", "sharpness", "Pc", "Pcr", "Ps", "aniso", "anisor", "map_Ka", "map_Ks", "map_Ke",
-    "map_Ns", "map_d", "map_Tr", "map_Pr", "map_Pm", "map_Ps", "map_RMA", "map_ORM", "map_bump", "map_Bump", "bump",
-    "norm", "disp", "decal", "refl", "map_aat", "map_opacity", "map_refl",
+    "Ka",
+    "Tf",
+    "Tn",
+    "Km",
+    "Kt",
+    "sharpness",
+    "Pc",
+    "Pcr",
+    "Ps",
+    "aniso",
+    "anisor",
+    "map_Ka",
+    "map_Ks",
+    "map_Ke",
+    "map_Ns",
+    "map_d",
+    "map_Tr",
+    "map_Pr",
+    "map_Pm",
+    "map_Ps",
+    "map_RMA",
+    "map_ORM",
+    "map_bump",
+    "map_Bump",
+    "bump",
+    "norm",
+    "disp",
+    "decal",
+    "refl",
+    "map_aat",
+    "map_opacity",
+    "map_refl",
 ];
 
 const USED: [&str; 12] = ["newmtl", "Kd", "Ks", "Ke", "Ns", "Ni", "d", "Tr", "illum", "map_Kd", "Pr", "Pm"];
@@ -106,7 +135,8 @@ fn read_key<'a>(
         if value >= low && value <= high {
             return Ok(value);
         }
-        let bound = if high < f32::MAX { format!("within {low} and {high}") } else { format!("at least {low}") };
+        let bound =
+            if high < f32::MAX { format!("within {low} and {high}") } else { format!("at least {low}") };
         Err(token.error(name, format!("{word} {} is not {bound}", token.shown())))
     };
     match word {
@@ -155,15 +185,20 @@ fn texture_name<'a>(
         let arguments = match option.bytes {
             b"-o" | b"-s" | b"-t" => 3,
             b"-mm" => 2,
-            b"-blendu" | b"-blendv" | b"-boost" | b"-texres" | b"-clamp" | b"-bm" | b"-imfchan" | b"-type"
-            | b"-cc" | b"-colorspace" => 1,
+            b"-blendu" | b"-blendv" | b"-boost" | b"-texres" | b"-clamp" | b"-bm" | b"-imfchan"
+            | b"-type" | b"-cc" | b"-colorspace" => 1,
             _ => return Err(option.error(name, format!("unknown texture option '{}'", option.shown()))),
         };
         for i in 0..arguments {
             // -o, -s and -t may leave out their second and third numbers.
             let optional = i > 0 && arguments == 3;
-            let is_number = |t: &Token<'_>| std::str::from_utf8(t.bytes).is_ok_and(|t| t.parse::<f32>().is_ok());
-            if optional { values.next_if(is_number) } else { values.next() };
+            let is_number =
+                |t: &Token<'_>| std::str::from_utf8(t.bytes).is_ok_and(|t| t.parse::<f32>().is_ok());
+            if optional {
+                values.next_if(is_number)
+            } else {
+                values.next()
+            };
         }
     }
     match values.next() {

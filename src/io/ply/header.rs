@@ -124,7 +124,8 @@ pub(super) fn parse(bytes: &[u8], name: &str) -> Result<Header> {
                 };
                 let property = property(key, tokens, name)?;
                 if element.properties.iter().any(|p| p.name == property.name) {
-                    let what = format!("property '{}' of element '{}' is there twice", property.name, element.name);
+                    let what =
+                        format!("property '{}' of element '{}' is there twice", property.name, element.name);
                     return Err(key.error(name, what));
                 }
                 element.properties.push(property);
@@ -183,7 +184,11 @@ fn element<'t>(
     if earlier.iter().any(|e| e.name.as_bytes() == label.bytes) {
         return Err(label.error(name, format!("element '{}' is there twice", label.shown())));
     }
-    Ok(Element { name: String::from_utf8_lossy(label.bytes).into_owned(), count: number, properties: Vec::new() })
+    Ok(Element {
+        name: String::from_utf8_lossy(label.bytes).into_owned(),
+        count: number,
+        properties: Vec::new(),
+    })
 }
 
 fn property<'t>(key: Token<'t>, mut tokens: impl Iterator<Item = Token<'t>>, name: &str) -> Result<Property> {

@@ -25,7 +25,8 @@ pub fn parse(bytes: &[u8], name: &str, _files: &dyn Files, options: &LoadOptions
     if vertices > u64::from(u32::MAX) {
         return Err(Error::limit(format!("{name}: vertices"), vertices, u32::MAX.into()));
     }
-    let mut reader = Reader { name, options, vertices, mesh: Mesh::new(name, Vec::new(), Vec::new(), 0), small_faces: 0 };
+    let mut reader =
+        Reader { name, options, vertices, mesh: Mesh::new(name, Vec::new(), Vec::new(), 0), small_faces: 0 };
     let mut scene = Scene::default();
     for element in &header.elements {
         let needed = element.count.saturating_mul(element.least_bytes(header.encoding));
@@ -46,7 +47,9 @@ pub fn parse(bytes: &[u8], name: &str, _files: &dyn Files, options: &LoadOptions
         }
     }
     if reader.small_faces > 0 {
-        scene.notices.push(format!("{name}: {} faces with fewer than 3 corners left out", reader.small_faces));
+        scene
+            .notices
+            .push(format!("{name}: {} faces with fewer than 3 corners left out", reader.small_faces));
     }
     let mut mesh = reader.mesh;
     mesh.material_ids = vec![0; mesh.triangles.len()];
@@ -116,8 +119,13 @@ impl Reader<'_> {
             return Err(Error::invalid(self.name, what));
         }
         let (normals, texcoords) = (has(3..6), has(6..8));
-        let ignored: Vec<&str> =
-            element.properties.iter().zip(&slots).filter(|(_, s)| s.is_none()).map(|(p, _)| p.name.as_str()).collect();
+        let ignored: Vec<&str> = element
+            .properties
+            .iter()
+            .zip(&slots)
+            .filter(|(_, s)| s.is_none())
+            .map(|(p, _)| p.name.as_str())
+            .collect();
         if !ignored.is_empty() {
             notices.push(format!("{}: vertex properties ignored: {}", self.name, ignored.join(", ")));
         }
@@ -160,7 +168,9 @@ impl Reader<'_> {
         let indices = element.properties.iter().find(|p| is_indices(p));
         match indices {
             Some(p) if p.count.is_some() && p.scalar.is_integer() => {}
-            Some(p) => return Err(Error::invalid(self.name, format!("'{}' is not a list of integers", p.name))),
+            Some(p) => {
+                return Err(Error::invalid(self.name, format!("'{}' is not a list of integers", p.name)));
+            }
             None if element.count == 0 => return Ok(()),
             None => return Err(Error::invalid(self.name, "faces need a list 'vertex_indices'")),
         }
@@ -192,7 +202,8 @@ impl Reader<'_> {
             let value = body.scalar(property.scalar)?;
             if !(value >= 0.0 && value < self.vertices as f64) {
                 let vertices = self.vertices;
-                let what = format!("corner {i} of face {face} is vertex {value}, but there are {vertices} vertices");
+                let what =
+                    format!("corner {i} of face {face} is vertex {value}, but there are {vertices} vertices");
                 return Err(Error::invalid(body.value_place(), what));
             }
             let vertex = value as u32;
