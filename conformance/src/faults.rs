@@ -1,0 +1,90 @@
+//! The planted bugs. A suite that never fails proves nothing: [`uncaught`] runs it on a backend with each of these, and
+//! one that nobody notices is a hole.
+
+use crate::expectations::{Verdict, judge};
+use crate::faulty::Faulty;
+use crate::suite;
+use crate::trial::{Effort, Options};
+use twinlight_core::Backend;
+
+macro_rules! faults {
+    ($($kernel:literal: $($variant:ident $story:literal),+;)+) => {
+        /// One planted bug.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Fault {
+            /// No bug: what the wrapper itself must not break.
+            None,
+            $($(#[doc = $story] $variant,)+)+
+        }
+
+        /// Every bug with the kernel it sits in and what it does.
+        pub const FAULTS: &[(Fault, &str, &str)] = &[$($((Fault::$variant, $kernel, $story),)+)+];
+    };
+}
+
+faults! {
+    "scan":
+        ScanInclusive "offsets include their own element",
+        ScanLostCarry "the carry into the 257th element's chunk is lost",
+        ScanLostLateCarry "the carry between the first 65536 elements and the rest is lost",
+        ScanLastElement "the last offset is not written",
+        ScanTotalWithoutLast "the total leaves out the last element",
+        ScanSaturates "sums saturate instead of wrapping",
+        ScanAcceptsLengths "unequal lengths are accepted";
+    "sort":
+        SortUnstable "the first two equal neighbours change places",
+        SortSkipsPass "the highest eight bits of u32 keys are not sorted by",
+        SortSkipsMiddlePass "bits 32 to 39 of u64 keys are not sorted by",
+        SortKeepsPayload "keys move and payload stays",
+        SortDescending "the order is descending",
+        SortDropsLast "the last pair is not sorted",
+        SortSigned "u32 keys compare as signed",
+        SortAcceptsLengths "unequal lengths are accepted";
+    "trace":
+        TraceTieToHigherId "of equally near triangles the highest id is named",
+        TraceCullsBackFaces "back faces are not met",
+        TraceIgnoresMin "t_min counts as 0",
+        TraceIgnoresMax "t_max counts as infinite",
+        TraceMaxExclusive "a hit at t_max is refused",
+        TraceMissesTriangles "every 61st triangle is invisible",
+        TraceEdgesExclusive "rays through edges and corners miss",
+        TraceSwapsWeights "u and v change places",
+        TraceNormalizesDirections "t counts world units",
+        TraceWrongMissDistance "t of a miss is 0",
+        TraceSlotForId "the slot is reported in place of the id",
+        TraceLastRay "the last ray of a batch over 64 is not traced",
+        TraceAnyInverted "occlusion is inverted",
+        TraceAnyIgnoresMax "occlusion ignores t_max";
+}
+
+/// A bug the suite did not see.
+#[derive(Debug, Clone)]
+pub struct Uncaught {
+    /// Which.
+    pub fault: Fault,
+    /// Where it sits.
+    pub kernel: &'static str,
+    /// What it does.
+    pub story: &'static str,
+}
+
+/// Runs `fault`'s kernel's trials on `backend` with the bug planted and returns the first trial that fails.
+pub fn caught_by<B: Backend + Sync>(backend: &B, fault: Fault, kernel: &str, seed: u64) -> Option<String> {
+    let options =
+        Options { effort: Effort::Quick, seed, kernels: vec![kernel.to_owned()], ..Options::default() };
+    let faulty = Faulty::new(backend, fault);
+    let info = backend.info();
+    let failed =
+        |trial: &crate::Trial<'_>| matches!(judge(&[], &info, &trial.name, trial.run()), Verdict::Failed(_));
+    let trials = suite(&faulty, &options);
+    trials.iter().find(|trial| failed(trial)).map(|trial| trial.name.clone())
+}
+
+/// The bugs that the suite does not see in `backend`.
+pub fn uncaught<B: Backend + Sync>(backend: &B, seed: u64) -> Vec<Uncaught> {
+    FAULTS
+        .iter()
+        .filter(|(fault, kernel, _)| caught_by(backend, *fault, kernel, seed).is_none())
+        .map(|&(fault, kernel, story)| Uncaught { fault, kernel, story })
+        .collect()
+}

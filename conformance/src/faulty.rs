@@ -1,0 +1,111 @@
+//! A backend with one planted bug: everything goes through to a sound backend, and one result comes back wrong.
+
+mod scan;
+mod sort;
+mod trace;
+
+use crate::faults::Fault;
+use bytemuck::Pod;
+use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use twinlight_core::kernels::trace::{Hit, Ray};
+use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use twinlight_core::scene::CompiledScene;
+use twinlight_core::{Backend, BackendInfo, Result};
+
+/// `inner` with `fault` in it.
+#[derive(Debug)]
+pub struct Faulty<'a, B> {
+    inner: &'a B,
+    fault: Fault,
+}
+
+/// A scene on the sound backend, and on the host for the bugs that need to know it.
+#[derive(Debug)]
+pub struct FaultyScene<S> {
+    inner: S,
+    host: CompiledScene,
+}
+
+impl<'a, B: Backend> Faulty<'a, B> {
+    /// Plants `fault` in `inner`.
+    pub fn new(inner: &'a B, fault: Fault) -> Self {
+        Self { inner, fault }
+    }
+}
+
+impl<B: Backend> Backend for Faulty<'_, B> {
+    type Buffer<T: Pod + Send + Sync> = B::Buffer<T>;
+    type Scene = FaultyScene<B::Scene>;
+
+    fn info(&self) -> BackendInfo {
+        self.inner.info()
+    }
+
+    fn upload<T: Pod + Send + Sync>(&self, data: &[T]) -> Result<B::Buffer<T>> {
+        self.inner.upload(data)
+    }
+
+    fn zeroed<T: Pod + Send + Sync>(&self, len: usize) -> Result<B::Buffer<T>> {
+        self.inner.zeroed(len)
+    }
+
+    fn download<T: Pod + Send + Sync>(&self, buffer: &B::Buffer<T>) -> Result<Vec<T>> {
+        self.inner.download(buffer)
+    }
+
+    fn len<T: Pod + Send + Sync>(&self, buffer: &B::Buffer<T>) -> usize {
+        self.inner.len(buffer)
+    }
+
+    fn upload_scene(&self, scene: &CompiledScene) -> Result<Self::Scene> {
+        Ok(FaultyScene { inner: self.inner.upload_scene(scene)?, host: scene.clone() })
+    }
+
+    fn scan(&self, input: &B::Buffer<u32>, output: &mut B::Buffer<u32>) -> Result<u32> {
+        scan::scan(self.inner, self.fault, input, output)
+    }
+
+    fn sort_u32(&self, keys: &mut B::Buffer<u32>, payload: &mut B::Buffer<u32>) -> Result<()> {
+        sort::sort(self.inner, self.fault, keys, payload)
+    }
+
+    fn sort_u64(&self, keys: &mut B::Buffer<u64>, payload: &mut B::Buffer<u32>) -> Result<()> {
+        sort::sort(self.inner, self.fault, keys, payload)
+    }
+
+    fn trace_closest(
+        &self,
+        scene: &Self::Scene,
+        rays: &B::Buffer<Ray>,
+        hits: &mut B::Buffer<Hit>,
+    ) -> Result<()> {
+        trace::closest(self.inner, self.fault, scene, rays, hits)
+    }
+
+    fn trace_any(
+        &self,
+        scene: &Self::Scene,
+        rays: &B::Buffer<Ray>,
+        occluded: &mut B::Buffer<u32>,
+    ) -> Result<()> {
+        trace::any(self.inner, self.fault, scene, rays, occluded)
+    }
+
+    fn shade_primary(
+        &self,
+        scene: &Self::Scene,
+        params: &ShadePrimaryParams,
+        gbuffer: &mut B::Buffer<GBufferTexel>,
+    ) -> Result<()> {
+        self.inner.shade_primary(&scene.inner, params, gbuffer)
+    }
+
+    fn trace_paths(
+        &self,
+        scene: &Self::Scene,
+        params: &TracePathsParams,
+        film: &mut B::Buffer<FilmTexel>,
+    ) -> Result<()> {
+        self.inner.trace_paths(&scene.inner, params, film)
+    }
+}

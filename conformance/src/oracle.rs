@@ -1,0 +1,6 @@
+//! Third opinions, one per kernel: serial, naive on purpose, exact or in f64. They share no algorithm with either twin,
+//! so that a misreading both twins share still shows.
+
+pub mod scan;
+pub mod sort;
+pub mod trace;
