@@ -1,10 +1,9 @@
 //! The public test scenes, where `TWINLIGHT_SCENES` names their folder.
 #![cfg(feature = "io")]
 
-use std::path::{Path, PathBuf};
-use twinlight::io::resolve::Resolver;
-use twinlight::io::{LoadOptions, gltf};
-use twinlight_core::scene::{Scene, compile};
+use std::path::PathBuf;
+use twinlight::io::{LoadOptions, load};
+use twinlight_core::scene::compile;
 
 fn scenes(test: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("TWINLIGHT_SCENES").map(PathBuf::from);
@@ -12,12 +11,6 @@ fn scenes(test: &str) -> Option<PathBuf> {
         println!("SKIPPED {test}: TWINLIGHT_SCENES is not set");
     }
     folder
-}
-
-fn load(path: &Path) -> Scene {
-    let options = LoadOptions::default();
-    let files = Resolver::new(path, &options).unwrap();
-    gltf::parse(&std::fs::read(path).unwrap(), &path.display().to_string(), &files, &options).unwrap()
 }
 
 #[test]
@@ -29,7 +22,8 @@ fn triangle_counts_bounds_and_textures_of_the_public_scenes() {
         ("animated-cesium-man/CesiumMan.glb", 4672, 1, [-0.57, 0.0, -0.13, 0.57, 1.51, 0.18]),
     ];
     for (file, triangles, textures, bounds) in cases {
-        let scene = load(&folder.join(file));
+        let options = LoadOptions::default();
+        let scene = load(folder.join(file).to_str().unwrap(), &options).unwrap();
         assert_eq!(scene.triangle_count(), triangles, "{file}");
         assert_eq!(scene.textures.len(), textures, "{file}");
         let (lo, hi) = scene.bounds().unwrap();
@@ -41,7 +35,7 @@ fn triangle_counts_bounds_and_textures_of_the_public_scenes() {
                 "{file}: {found} {expected}"
             );
         }
-        compile(&scene, &LoadOptions::default().limits).unwrap();
+        compile(&scene, &options.limits).unwrap();
         println!("{file}: {:#?}", scene.notices);
     }
 }

@@ -10,7 +10,12 @@ use twinlight_core::{Error, Result};
 type Parse = fn(&[u8], &str, &dyn Files, &LoadOptions) -> Result<Scene>;
 
 /// Extensions and their readers.
-const READERS: [(&str, Parse); 2] = [("obj", super::obj::parse), ("ply", super::ply::parse)];
+const READERS: [(&str, Parse); 4] = [
+    ("obj", super::obj::parse),
+    ("ply", super::ply::parse),
+    ("gltf", super::gltf::parse),
+    ("glb", super::gltf::parse),
+];
 
 /// Loads `builtin:NAME`, or a scene file by its extension. What a file leaves open stays open: see
 /// [`super::complete`].

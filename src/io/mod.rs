@@ -7,6 +7,7 @@
 mod atomic;
 pub mod builtin;
 mod complete;
+pub mod gltf;
 pub mod image;
 mod load;
 pub mod obj;

@@ -79,7 +79,7 @@ impl Document<'_> {
         if let Some(bad) = indices.iter().flatten().find(|&&i| i as usize >= vertices) {
             return Err(self.invalid(&format!("{path}.indices"), format!("vertex {bad} of {vertices}")));
         }
-        if mode == Mode::Triangles && corners % 3 != 0 {
+        if mode == Mode::Triangles && !corners.is_multiple_of(3) {
             return Err(self.invalid(path, format!("{corners} corners are no whole number of triangles")));
         }
         let count = if mode == Mode::Triangles { corners / 3 } else { corners.saturating_sub(2) };
