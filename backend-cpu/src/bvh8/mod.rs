@@ -60,4 +60,12 @@ impl WideBvh {
             + size_of_val(self.ids.as_slice());
         (self.nodes.len(), self.packs.len(), bytes)
     }
+
+    /// Triangles per pack and children per node, on average.
+    #[must_use]
+    pub fn fill(&self) -> (f64, f64) {
+        let triangles = self.slots.iter().filter(|&&slot| slot != NO_SLOT).count();
+        let children: usize = self.nodes.iter().map(Node::occupied).sum();
+        (triangles as f64 / (self.packs.len() - 1).max(1) as f64, children as f64 / self.nodes.len() as f64)
+    }
 }

@@ -34,6 +34,11 @@ impl Node {
         Node { bounds: [lo, hi, lo, hi, lo, hi], children: [LEAF; CHILDREN] }
     };
 
+    /// Number of children.
+    pub(super) fn occupied(&self) -> usize {
+        self.bounds[0].iter().filter(|min| min.is_finite()).count()
+    }
+
     pub(super) fn set(&mut self, lane: usize, min: Vec3, max: Vec3, child: u32) {
         for axis in 0..3 {
             self.bounds[2 * axis][lane] = min[axis];
@@ -62,29 +67,47 @@ pub(super) struct NodeRay<W: Width> {
 impl<W: Width> NodeRay<W> {
     #[inline(always)]
     pub(super) fn new(width: W, origin: Vec3, inverse: Vec3) -> Self {
-        let splat = |v: Vec3| v.to_array().map(|x| W::F8::splat(width, x));
-        let row = |axis: usize| 2 * axis + usize::from(inverse[axis] < 0.0);
         NodeRay {
-            origin: splat(origin),
-            near_inverse: splat(inverse),
-            far_inverse: splat(inverse * FAR_FACTOR),
+            origin: splat3(width, origin),
+            near_inverse: splat3(width, inverse),
+            far_inverse: splat3(width, inverse * FAR_FACTOR),
             zero: W::F8::splat(width, 0.0),
-            near_row: [row(0), row(1), row(2)],
+            near_row: [
+                usize::from(inverse.x < 0.0),
+                2 + usize::from(inverse.y < 0.0),
+                4 + usize::from(inverse.z < 0.0),
+            ],
         }
     }
 
     /// Which children the ray meets at parameters in 0 ..= `t_best`, and where it enters each.
     #[inline(always)]
     pub(super) fn meet(&self, width: W, node: &Node, t_best: f32) -> (u32, W::F8) {
-        let plane = |axis: usize, row: usize, inverse: &[W::F8; 3]| {
-            // SAFETY: rows are 2·axis or 2·axis + 1, at most 5.
-            let bounds = unsafe { node.bounds.get_unchecked(row) };
-            (W::F8::load(width, bounds) - self.origin[axis]) * inverse[axis]
-        };
-        let near = |axis: usize| plane(axis, self.near_row[axis], &self.near_inverse);
-        let far = |axis: usize| plane(axis, self.near_row[axis] ^ 1, &self.far_inverse);
-        let enter = near(0).maximum(near(1)).maximum(near(2).maximum(self.zero));
-        let leave = far(0).minimum(far(1)).minimum(far(2).minimum(W::F8::splat(width, t_best)));
+        let near_x = (self.near_plane(width, node, 0) - self.origin[0]) * self.near_inverse[0];
+        let near_y = (self.near_plane(width, node, 1) - self.origin[1]) * self.near_inverse[1];
+        let near_z = (self.near_plane(width, node, 2) - self.origin[2]) * self.near_inverse[2];
+        let far_x = (self.far_plane(width, node, 0) - self.origin[0]) * self.far_inverse[0];
+        let far_y = (self.far_plane(width, node, 1) - self.origin[1]) * self.far_inverse[1];
+        let far_z = (self.far_plane(width, node, 2) - self.origin[2]) * self.far_inverse[2];
+        let enter = near_x.maximum(near_y).maximum(near_z.maximum(self.zero));
+        let leave = far_x.minimum(far_y).minimum(far_z.minimum(W::F8::splat(width, t_best)));
         (enter.le(leave).bits(), enter)
     }
+
+    #[inline(always)]
+    fn near_plane(&self, width: W, node: &Node, axis: usize) -> W::F8 {
+        // SAFETY: rows are 2·axis or 2·axis + 1, at most 5.
+        W::F8::load(width, unsafe { node.bounds.get_unchecked(self.near_row[axis]) })
+    }
+
+    #[inline(always)]
+    fn far_plane(&self, width: W, node: &Node, axis: usize) -> W::F8 {
+        // SAFETY: rows are 2·axis or 2·axis + 1, at most 5.
+        W::F8::load(width, unsafe { node.bounds.get_unchecked(self.near_row[axis] ^ 1) })
+    }
+}
+
+#[inline(always)]
+fn splat3<W: Width>(width: W, v: Vec3) -> [W::F8; 3] {
+    [W::F8::splat(width, v.x), W::F8::splat(width, v.y), W::F8::splat(width, v.z)]
 }

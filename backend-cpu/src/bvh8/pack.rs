@@ -43,32 +43,52 @@ pub(super) struct PackHits<W: Width> {
     pub determinant: PackLanes<W>,
 }
 
+/// Three numbers of every triangle of a pack: of a corner, by permuted axis.
+type Lanes3<W> = [PackLanes<W>; 3];
+
+#[inline(always)]
+fn splat3<W: Width>(width: W, [x, y, z]: [f32; 3]) -> Lanes3<W> {
+    [PackLanes::<W>::splat(width, x), PackLanes::<W>::splat(width, y), PackLanes::<W>::splat(width, z)]
+}
+
 impl<W: Width> PackRay<W> {
     #[inline(always)]
     pub(super) fn new(width: W, frame: &RayFrame, t_min: f32) -> Self {
-        let axes = frame.axes.map(|k| k as usize);
-        let permuted = |v: Vec3| axes.map(|k| v[k]);
-        let splat = |v: [f32; 3]| v.map(|x| PackLanes::<W>::splat(width, x));
+        let axes = [frame.axes[0] as usize, frame.axes[1] as usize, frame.axes[2] as usize];
         PackRay {
             axes,
-            origin: splat(permuted(frame.origin)),
-            shear: splat(frame.shear.to_array()),
-            inverse: permuted(frame.inverse),
+            origin: splat3(width, permuted(frame.origin, axes)),
+            shear: splat3(width, frame.shear.to_array()),
+            inverse: permuted(frame.inverse, axes),
             t_min,
         }
     }
 
-    /// Tests every lane. `None` when no line of a triangle's edges lets the ray through, which is the common case.
+    #[inline(always)]
+    fn corner(&self, width: W, pack: &Pack, vertex: usize) -> Lanes3<W> {
+        let corner = &pack.corners[vertex];
+        // SAFETY: axes come from a ray frame and are 0 to 2.
+        unsafe {
+            [
+                PackLanes::<W>::load(width, corner.get_unchecked(self.axes[0])),
+                PackLanes::<W>::load(width, corner.get_unchecked(self.axes[1])),
+                PackLanes::<W>::load(width, corner.get_unchecked(self.axes[2])),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    fn relative(&self, corner: Lanes3<W>) -> Lanes3<W> {
+        [corner[0] - self.origin[0], corner[1] - self.origin[1], corner[2] - self.origin[2]]
+    }
+
+    /// Tests every lane. `None` when no triangle's edges let the ray through, which is the common case.
     #[inline(always)]
     pub(super) fn meet(&self, width: W, pack: &Pack, t_best: f32) -> Option<PackHits<W>> {
         let zero = PackLanes::<W>::splat(width, 0.0);
-        let corner = |vertex: usize, k: usize| {
-            // SAFETY: vertices are 0 to 2, axes come from a ray frame and are 0 to 2.
-            let lanes = unsafe { pack.corners.get_unchecked(vertex).get_unchecked(self.axes[k]) };
-            PackLanes::<W>::load(width, lanes) - self.origin[k]
-        };
-        let relative = |vertex: usize| [corner(vertex, 0), corner(vertex, 1), corner(vertex, 2)];
-        let [a, b, c] = [relative(0), relative(1), relative(2)];
+        let a = self.relative(self.corner(width, pack, 0));
+        let b = self.relative(self.corner(width, pack, 1));
+        let c = self.relative(self.corner(width, pack, 2));
         let [sx, sy, sz] = self.shear;
         let (ax, ay) = (a[0] - sx * a[2], a[1] - sy * a[2]);
         let (bx, by) = (b[0] - sx * b[2], b[1] - sy * b[2]);
@@ -98,31 +118,40 @@ impl<W: Width> PackRay<W> {
     #[inline(always)]
     fn padded_slab(&self, width: W, pack: &Pack) -> (PackLanes<W>, PackLanes<W>) {
         let zero = PackLanes::<W>::splat(width, 0.0);
-        let bounds = |k: usize| {
-            let corner = |vertex: usize| {
-                // SAFETY: vertices are 0 to 2, axes come from a ray frame and are 0 to 2.
-                PackLanes::<W>::load(width, unsafe { pack.corners[vertex].get_unchecked(self.axes[k]) })
-            };
-            let [p0, p1, p2] = [corner(0), corner(1), corner(2)];
-            (p0.minimum(p1).minimum(p2), p0.maximum(p1).maximum(p2))
-        };
-        let boxes = [bounds(0), bounds(1), bounds(2)];
-        let size = boxes.map(|(min, max)| max - min);
-        let extent = size[0].maximum(size[1]).maximum(size[2]);
-        // max(|min|, |max|), as min ≤ max.
-        let reach = boxes.map(|(min, max)| (zero - min).maximum(max));
+        let p0 = self.corner(width, pack, 0);
+        let p1 = self.corner(width, pack, 1);
+        let p2 = self.corner(width, pack, 2);
+        let min = minimum3::<W>(minimum3::<W>(p0, p1), p2);
+        let max = maximum3::<W>(maximum3::<W>(p0, p1), p2);
+        let extent = (max[0] - min[0]).maximum(max[1] - min[1]).maximum(max[2] - min[2]);
+        // max(|min|, |max|) per axis, as min ≤ max.
+        let reach = maximum3::<W>([zero - min[0], zero - min[1], zero - min[2]], max);
         let coordinate = reach[0].maximum(reach[1]).maximum(reach[2]);
         let pad = extent * PackLanes::<W>::splat(width, PAD_EXTENT)
             + coordinate * PackLanes::<W>::splat(width, PAD_COORDINATE);
-        let side = |k: usize| {
-            let inverse = PackLanes::<W>::splat(width, self.inverse[k]);
-            let a = (boxes[k].0 - pad - self.origin[k]) * inverse;
-            let b = (boxes[k].1 + pad - self.origin[k]) * inverse;
-            (a.minimum(b), a.maximum(b))
-        };
-        let [x, y, z] = [side(0), side(1), side(2)];
-        let near = x.0.maximum(y.0).maximum(z.0);
-        let far = x.1.minimum(y.1).minimum(z.1) * PackLanes::<W>::splat(width, SLAB_FAR_FACTOR);
-        (near, far)
+        let [ix, iy, iz] = splat3(width, self.inverse);
+        let low = self.relative([min[0] - pad, min[1] - pad, min[2] - pad]);
+        let high = self.relative([max[0] + pad, max[1] + pad, max[2] + pad]);
+        let a = [low[0] * ix, low[1] * iy, low[2] * iz];
+        let b = [high[0] * ix, high[1] * iy, high[2] * iz];
+        let (enter, leave) = (minimum3::<W>(a, b), maximum3::<W>(a, b));
+        let near = enter[0].maximum(enter[1]).maximum(enter[2]);
+        let far = leave[0].minimum(leave[1]).minimum(leave[2]);
+        (near, far * PackLanes::<W>::splat(width, SLAB_FAR_FACTOR))
     }
+}
+
+#[inline(always)]
+fn permuted(v: Vec3, axes: [usize; 3]) -> [f32; 3] {
+    [v[axes[0]], v[axes[1]], v[axes[2]]]
+}
+
+#[inline(always)]
+fn minimum3<W: Width>(a: Lanes3<W>, b: Lanes3<W>) -> Lanes3<W> {
+    [a[0].minimum(b[0]), a[1].minimum(b[1]), a[2].minimum(b[2])]
+}
+
+#[inline(always)]
+fn maximum3<W: Width>(a: Lanes3<W>, b: Lanes3<W>) -> Lanes3<W> {
+    [a[0].maximum(b[0]), a[1].maximum(b[1]), a[2].maximum(b[2])]
 }

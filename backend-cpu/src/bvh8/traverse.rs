@@ -3,22 +3,26 @@
 use super::node::{LEAF, NodeRay};
 use super::pack::{PACK, PackHits, PackRay};
 use super::{MAX_STACK, NO_SLOT, Node, Pack, SlotHit, Visits, WideBvh};
-use crate::simd::{Lanes, Width};
+use crate::simd::{Lanes, Portable, Width};
 use glam::Vec3;
 use std::mem::MaybeUninit;
 use twinlight_core::transport::intersect::ray_frame;
 
 /// Children still to visit: the entry parameter's bits above, the reference below. Entries are not negative, so the
 /// order of the integers is the order of the entries.
-struct Stack {
-    entries: [MaybeUninit<u64>; MAX_STACK],
+struct Stack<'a> {
+    entries: &'a mut Entries,
     len: usize,
 }
 
-impl Stack {
+/// Memory of a stack. Apart from [`Stack`], because a struct that is partly initialised is set to 0 as a whole, 4 KiB
+/// per ray.
+type Entries = [MaybeUninit<u64>; MAX_STACK];
+
+impl<'a> Stack<'a> {
     #[inline(always)]
-    fn new() -> Self {
-        Stack { entries: [MaybeUninit::uninit(); MAX_STACK], len: 0 }
+    fn new(entries: &'a mut Entries) -> Self {
+        Stack { entries, len: 0 }
     }
 
     #[inline(always)]
@@ -116,7 +120,8 @@ impl WideBvh {
         let node_ray = NodeRay::new(width, origin, frame.inverse);
         let pack_ray = PackRay::new(width, &frame, t_min);
         let mut best = Best { t: t_max, u: 0.0, v: 0.0, lane: NO_SLOT };
-        let mut stack = Stack::new();
+        let mut entries: Entries = [MaybeUninit::uninit(); MAX_STACK];
+        let mut stack = Stack::new(&mut entries);
         let mut current = 0_u32;
         loop {
             if current & LEAF == 0 {
@@ -158,7 +163,8 @@ impl WideBvh {
         let frame = ray_frame(origin, direction);
         let node_ray = NodeRay::new(width, origin, frame.inverse);
         let pack_ray = PackRay::new(width, &frame, t_min);
-        let mut stack = Stack::new();
+        let mut entries: Entries = [MaybeUninit::uninit(); MAX_STACK];
+        let mut stack = Stack::new(&mut entries);
         let mut current = 0_u32;
         loop {
             if current & LEAF == 0 {
@@ -189,7 +195,7 @@ impl WideBvh {
             return;
         }
         let ts = hits.t.to_array();
-        let [vs, ws] = hits.edges.map(Lanes::to_array);
+        let (vs, ws) = (hits.edges[0].to_array(), hits.edges[1].to_array());
         let determinants = hits.determinant.to_array();
         while mask != 0 {
             let i = mask.trailing_zeros() as usize & (PACK - 1);
@@ -215,16 +221,10 @@ impl WideBvh {
     }
 
     /// What finding the closest hit of one ray takes.
-    pub fn count_visits<W: Width>(
-        &self,
-        width: W,
-        origin: Vec3,
-        direction: Vec3,
-        t_min: f32,
-        t_max: f32,
-    ) -> Visits {
+    #[must_use]
+    pub fn count_visits(&self, origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> Visits {
         let mut visits = Visits::default();
-        self.closest_counting(width, origin, direction, t_min, t_max, |node| {
+        self.closest_counting(Portable, origin, direction, t_min, t_max, |node| {
             if node {
                 visits.nodes += 1;
             } else {
@@ -238,7 +238,7 @@ impl WideBvh {
 /// The met child that the ray enters first; the others go on the stack, the farthest lowest.
 #[inline(always)]
 fn nearest_child<L: Lanes<Array = [f32; 8]>>(
-    stack: &mut Stack,
+    stack: &mut Stack<'_>,
     node: &Node,
     mut mask: u32,
     enter: L,
@@ -247,31 +247,30 @@ fn nearest_child<L: Lanes<Array = [f32; 8]>>(
         return None;
     }
     let enters = enter.to_array();
-    let mut next = || {
-        let i = mask.trailing_zeros() as usize & 7;
-        mask &= mask - 1;
-        (u64::from(enters[i].to_bits()) << 32 | u64::from(node.children[i]), mask != 0)
-    };
-    let (first, more) = next();
-    if !more {
+    let first = take_child(node, &enters, &mut mask);
+    if mask == 0 {
         return Some(first as u32);
     }
-    let (second, more) = next();
+    let second = take_child(node, &enters, &mut mask);
     let (nearer, farther) = if first < second { (first, second) } else { (second, first) };
-    if !more {
+    if mask == 0 {
         stack.push(farther);
         return Some(nearer as u32);
     }
     let base = stack.len;
     stack.push(farther);
     stack.push(nearer);
-    loop {
-        let (entry, more) = next();
-        stack.push(entry);
+    while mask != 0 {
+        stack.push(take_child(node, &enters, &mut mask));
         stack.sink_last(base);
-        if !more {
-            break;
-        }
     }
     stack.pop().map(|entry| entry as u32)
+}
+
+/// The stack entry of the lowest child in `mask`, which is cleared there.
+#[inline(always)]
+fn take_child(node: &Node, enters: &[f32; 8], mask: &mut u32) -> u64 {
+    let i = mask.trailing_zeros() as usize & 7;
+    *mask &= *mask - 1;
+    u64::from(enters[i].to_bits()) << 32 | u64::from(node.children[i])
 }

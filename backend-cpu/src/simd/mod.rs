@@ -110,7 +110,8 @@ pub fn detect() -> Isa {
 }
 
 /// Work that can run at any width. `run` must be `#[inline(always)]`, as must what it calls on its hot path: that is
-/// how it takes on the instruction set. Closures handed to other threads don't, so [`dispatch`] once per chunk of work.
+/// how it takes on the instruction set. Closures are compiled without it, so loops there are plain loops, and work for
+/// other threads calls [`dispatch`] once per chunk.
 pub trait Kernel {
     /// What it returns.
     type Output;

@@ -107,8 +107,11 @@ impl Kernel for Closest<'_> {
     type Output = Vec<SlotHit>;
     #[inline(always)]
     fn run<W: Width>(self, width: W) -> Vec<SlotHit> {
-        let hit = |r: &Ray| self.0.closest(width, r.origin.into(), r.direction.into(), r.t_min, r.t_max);
-        self.1.iter().map(hit).collect()
+        let mut hits = Vec::new();
+        for r in self.1 {
+            hits.push(self.0.closest(width, r.origin.into(), r.direction.into(), r.t_min, r.t_max));
+        }
+        hits
     }
 }
 
@@ -118,8 +121,11 @@ impl Kernel for Occluded<'_> {
     type Output = Vec<bool>;
     #[inline(always)]
     fn run<W: Width>(self, width: W) -> Vec<bool> {
-        let hit = |r: &Ray| self.0.occluded(width, r.origin.into(), r.direction.into(), r.t_min, r.t_max);
-        self.1.iter().map(hit).collect()
+        let mut hits = Vec::new();
+        for r in self.1 {
+            hits.push(self.0.occluded(width, r.origin.into(), r.direction.into(), r.t_min, r.t_max));
+        }
+        hits
     }
 }
 

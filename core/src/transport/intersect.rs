@@ -32,6 +32,7 @@ pub struct RayFrame {
 }
 
 /// Reciprocal of one direction component, finite for any finite input.
+#[inline(always)]
 pub fn safe_reciprocal(d: f32) -> f32 {
     let magnitude = if d.abs() < MIN_DIRECTION { MIN_DIRECTION } else { d.abs() };
     let reciprocal = 1.0 / magnitude;
@@ -39,6 +40,7 @@ pub fn safe_reciprocal(d: f32) -> f32 {
 }
 
 /// The frame of a ray. A zero direction gives a frame with which every triangle test fails.
+#[inline(always)]
 pub fn ray_frame(origin: Vec3, direction: Vec3) -> RayFrame {
     let magnitude = direction.abs();
     let mut kz = 0_u32;
@@ -63,6 +65,7 @@ pub fn ray_frame(origin: Vec3, direction: Vec3) -> RayFrame {
 
 /// Entry and exit parameters of a ray and a box, the exit moved out by [`SLAB_FAR_FACTOR`]. The ray meets the box in
 /// `t ≥ 0` when `max(near, 0) ≤ far`. Monotone: a box inside another has no smaller entry and no greater exit.
+#[inline(always)]
 pub fn slab(frame: &RayFrame, min: Vec3, max: Vec3) -> (f32, f32) {
     let a = (min - frame.origin) * frame.inverse;
     let b = (max - frame.origin) * frame.inverse;
@@ -72,17 +75,20 @@ pub fn slab(frame: &RayFrame, min: Vec3, max: Vec3) -> (f32, f32) {
 }
 
 /// `a < b ? a : b`, the form WGSL's `select` has; differs from `f32::min` on signed zeros.
+#[inline(always)]
 pub fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 /// `a > b ? a : b`.
+#[inline(always)]
 pub fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 /// Padded bounds of a triangle. The pad covers the distance by which rounding in the sheared test may accept a ray
 /// that passes outside: relative to the edge lengths, and to the coordinates the edges are differences of.
+#[inline(always)]
 pub fn padded_bounds(p0: Vec3, p1: Vec3, p2: Vec3) -> (Vec3, Vec3) {
     let min = Vec3::new(
         smaller(smaller(p0.x, p1.x), p2.x),
@@ -118,6 +124,7 @@ pub struct TriangleHit {
 }
 
 /// Conditions 1 to 3 of [`crate::kernels::trace`] for `t_min < t ≤ t_max`.
+#[inline(always)]
 pub fn triangle(
     frame: &RayFrame,
     p0: Vec3,
@@ -167,6 +174,7 @@ pub fn triangle(
 /// Entry and exit of a ray (direction of any length) and a sphere, or `None`. The discriminant is formed from the
 /// perpendicular distance, which keeps its digits when the sphere is small and far (Haines et al., Ray Tracing Gems
 /// ch. 7).
+#[inline(always)]
 pub fn sphere(origin: Vec3, direction: Vec3, center: Vec3, radius: f32) -> Option<(f32, f32)> {
     let f = origin - center;
     let a = direction.dot(direction);
