@@ -170,15 +170,22 @@ fn trace_path<T: Tracer>(
             to_viewer.dot(bitangent),
             to_viewer.dot(surface.shading_normal),
         );
-        let [choose_light, choose_lobe] = sampler.pair(base + 2);
+        // Not drawn where there is nothing to choose between.
+        let mut choice = [0, 0];
+        if scene.environment.light_count > 1
+            || material.specular_f90 > 0.0
+            || material.kind != MATERIAL_OPAQUE
+        {
+            choice = sampler.pair(base + 2);
+        }
         // [3] direct light
         if material.kind == MATERIAL_OPAQUE && scene.environment.light_count > 0 {
             let frame = (tangent, bitangent, surface.shading_normal);
-            add_direct_light(&mut path, tracer, scene, &surface, frame, wo, sampler, base, choose_light);
+            add_direct_light(&mut path, tracer, scene, &surface, frame, wo, sampler, base, choice[0]);
         }
         // [4] scatter
         let [u, v] = sampler.pair(base);
-        let scattered = scatter(material, &surface, wo, to_unit(choose_lobe), to_unit(u), to_unit(v));
+        let scattered = scatter(material, &surface, wo, to_unit(choice[1]), to_unit(u), to_unit(v));
         if scattered.direction == Vec3::ZERO {
             return path.light;
         }

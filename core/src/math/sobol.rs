@@ -33,12 +33,13 @@ pub fn second_dimension_reversed(index: u32) -> u32 {
 /// Pair number `pair` of point `sample`, of the sequence that belongs to `stream`; 32 random bits each.
 #[inline(always)]
 pub fn sobol_pair(stream: u32, sample: u32, pair: u32) -> [u32; 2] {
-    let seed = mix_pair(stream, pair);
+    let seed = mix(stream.wrapping_add(pair.wrapping_mul(0x9e37_79b9)));
     let shuffled = scramble_reversed(sample.reverse_bits(), seed).reverse_bits();
-    let first = scramble_reversed(shuffled, mix(seed ^ 0x68bc_21eb)).reverse_bits();
-    let second =
-        scramble_reversed(second_dimension_reversed(shuffled), mix(seed ^ 0x02e5_be93)).reverse_bits();
-    [first, second]
+    // The three seeds are one mixed word times odd constants: equally distributed, and far apart in every bit but the
+    // lowest few, which the shifted copy in the scrambling ignores.
+    let first = scramble_reversed(shuffled, seed.wrapping_mul(0xc2b2_ae35)).reverse_bits();
+    let second = second_dimension_reversed(shuffled);
+    [first, scramble_reversed(second, seed.wrapping_mul(0x27d4_eb2f)).reverse_bits()]
 }
 
 /// As [`sobol_pair`], but independent from sample to sample.

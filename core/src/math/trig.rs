@@ -3,15 +3,21 @@
 
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
+/// (sin, cos) of `a` radians, for −π/4 ≤ a ≤ π/4.
+#[inline(always)]
+pub fn sin_cos_octant(a: f32) -> (f32, f32) {
+    let z = a * a;
+    let sine = ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * a + a;
+    let cosine = ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * (z * z) - 0.5 * z + 1.0;
+    (sine, cosine)
+}
+
 /// (sin, cos) of `turns` full turns, for 0 ≤ turns ≤ 1; absolute error below 2⁻²².
 #[inline(always)]
 pub fn sin_cos_turns(turns: f32) -> (f32, f32) {
     let quarters = turns * 4.0;
     let quadrant = (quarters + 0.5) as i32;
-    let a = (quarters - quadrant as f32) * FRAC_PI_2;
-    let z = a * a;
-    let sine = ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * a + a;
-    let cosine = ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * (z * z) - 0.5 * z + 1.0;
+    let (sine, cosine) = sin_cos_octant((quarters - quadrant as f32) * FRAC_PI_2);
     let swap = quadrant & 1 == 1;
     let s = if swap { cosine } else { sine };
     let c = if swap { sine } else { cosine };

@@ -1,6 +1,8 @@
 //! Vectors beyond sums and products. Twin: `backend-gpu/src/shared/vector.wgsl`.
 
+use super::trig::sin_cos_octant;
 use glam::Vec3;
+use std::f32::consts::FRAC_PI_4;
 
 /// v / |v| for vectors of ordinary length (about 10⁻¹⁵ to 10¹⁵); 0 for 0.
 #[inline(always)]
@@ -51,10 +53,10 @@ pub fn concentric_disc(u: f32, v: f32) -> (f32, f32) {
     }
     let horizontal = x.abs() > y.abs();
     let radius = if horizontal { x } else { y };
-    // An eighth of a turn per unit of the ratio; negative angles are brought to [0, 1).
-    let turns = if horizontal { 0.125 * (y / x) } else { 0.25 - 0.125 * (x / y) };
-    let (s, c) = super::trig::sin_cos_turns(if turns < 0.0 { turns + 1.0 } else { turns });
-    (radius * c, radius * s)
+    let ratio = if horizontal { y / x } else { x / y };
+    let (s, c) = sin_cos_octant(ratio * FRAC_PI_4);
+    // Around the vertical axis the angle counts from that axis, which exchanges sine and cosine.
+    if horizontal { (radius * c, radius * s) } else { (radius * s, radius * c) }
 }
 
 #[cfg(test)]
