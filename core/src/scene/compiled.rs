@@ -118,7 +118,7 @@ pub struct LightRecord {
     pub position: [f32; 3],
     /// One of the `LIGHT_…` kinds.
     pub kind: u32,
-    /// Unit direction light travels (spot axis, directional).
+    /// Unit direction light travels (spot axis, directional), or unit normal of the triangle's front.
     pub direction: [f32; 3],
     /// Sphere radius.
     pub radius: f32,

@@ -7,7 +7,7 @@ use super::offset::{POSITION_ERROR, offset_origin};
 use super::{PI, SceneView};
 use crate::math::hash::to_index;
 use crate::math::trig::sin_cos_turns;
-use crate::math::vector::{basis, normalized, normalized_any, to_world};
+use crate::math::vector::{basis, normalized, to_world};
 use crate::scene::{
     EMITS_BOTH_SIDES, LIGHT_DIRECTIONAL, LIGHT_ENVIRONMENT, LIGHT_POINT, LIGHT_SPHERE, LIGHT_SPOT,
     LIGHT_TRIANGLE, LightRecord, NONE,
@@ -153,7 +153,7 @@ fn sample_triangle(scene: &SceneView<'_>, index: u32, from: Vec3, u: f32, v: f32
     let to_light = point - from;
     let squared = to_light.dot(to_light);
     let direction = normalized(to_light);
-    let normal = normalized_any((p1 - p0).cross(p2 - p0));
+    let normal = Vec3::from(light.direction);
     let facing = -(normal.dot(direction));
     let both = light.flags & EMITS_BOTH_SIDES != 0;
     let cosine = if both && facing < 0.0 { -facing } else { facing };

@@ -69,7 +69,8 @@ pub(super) fn scene_radius(bounds: (Vec3, Vec3)) -> f64 {
 
 fn triangle_light(t: &Triangle, slot: usize, material: &MaterialRecord) -> Option<(LightRecord, f64)> {
     let [p0, p1, p2] = [t.p0, t.p1, t.p2].map(|p| Vec3::from(p).as_dvec3());
-    let area = (p1 - p0).cross(p2 - p0).length() * 0.5;
+    let normal = (p1 - p0).cross(p2 - p0);
+    let area = normal.length() * 0.5;
     // The sampler divides by the f32 area.
     if !((area as f32) > 1e-30) {
         return None;
@@ -77,6 +78,7 @@ fn triangle_light(t: &Triangle, slot: usize, material: &MaterialRecord) -> Optio
     let sides = if material.flags & EMITS_BOTH_SIDES == 0 { 1.0 } else { 2.0 };
     let record = LightRecord {
         kind: LIGHT_TRIANGLE,
+        direction: normal.normalize().as_vec3().to_array(),
         emission: material.emission,
         triangle: slot as u32,
         flags: material.flags & EMITS_BOTH_SIDES,
