@@ -2,10 +2,11 @@
 
 use crate::io::image::{Channel, LayeredImage, RgbImage, Samples, guard};
 use ::exr::block::reader::Reader;
+use ::exr::compression::Compression;
 use ::exr::image::read::image::ReadLayers;
 use ::exr::image::read::layers::ReadChannels;
 use ::exr::image::{FlatImage, FlatSamples};
-use ::exr::meta::attribute::AttributeValue;
+use ::exr::meta::attribute::{AttributeValue, Text};
 use ::exr::meta::compute_chunk_count;
 use ::exr::meta::header::Header;
 use glam::DMat3;
@@ -40,8 +41,8 @@ pub fn read_layers(bytes: &[u8], name: &str, limits: &Limits) -> Result<LayeredI
         let prefix = layer.attributes.layer_name.filter(|_| multipart);
         for channel in layer.channel_data.list {
             let name = match &prefix {
-                Some(prefix) => format!("{prefix}.{}", channel.name),
-                None => channel.name.to_string(),
+                Some(prefix) => format!("{}.{}", utf8(prefix), utf8(&channel.name)),
+                None => utf8(&channel.name),
             };
             let samples = match channel.sample_data {
                 FlatSamples::F16(v) => Samples::F32(v.into_iter().map(|h| h.to_f32()).collect()),
@@ -66,7 +67,7 @@ pub fn read_attributes(bytes: &[u8], name: &str, limits: &Limits) -> Result<Vec<
     let mut pairs: Vec<(String, String)> = all
         .filter_map(|(key, value)| match value {
             AttributeValue::Text(text) => {
-                Some((key.to_string().strip_prefix(super::NAMESPACE)?.to_owned(), text.to_string()))
+                Some((utf8(key).strip_prefix(super::NAMESPACE)?.to_owned(), utf8(text)))
             }
             _ => None,
         })
@@ -127,6 +128,10 @@ pub fn read_environment(bytes: &[u8], name: &str, limits: &Limits) -> Result<Env
     })
 }
 
+fn utf8(text: &Text) -> String {
+    String::from_utf8_lossy(text.as_slice()).into_owned()
+}
+
 type Bytes<'a> = Cursor<&'a [u8]>;
 
 fn open<'a>(bytes: &'a [u8], name: &str, limits: &Limits) -> Result<Reader<Bytes<'a>>> {
@@ -159,6 +164,7 @@ fn check_header(
         let what = format!("layers of different sizes: {}x{} and {width}x{height}", first.0, first.1);
         return Err(Error::invalid(name, what));
     }
+    check_compression(header.compression, name)?;
     if let Some(c) = header.channels.list.iter().find(|c| c.sampling.0 != 1 || c.sampling.1 != 1) {
         return Err(Error::Unsupported(format!("{name}: subsampled channel '{}'", c.name)));
     }
@@ -173,6 +179,18 @@ fn check_header(
         return Err(Error::invalid(name, what));
     }
     Ok(())
+}
+
+/// The decoders of the other, lossy, methods panic on damaged data (B44 subtracts below zero), and few environments come
+/// in them.
+fn check_compression(compression: Compression, name: &str) -> Result<()> {
+    use Compression::{PIZ, PXR24, RLE, Uncompressed, ZIP1, ZIP16};
+    match compression {
+        Uncompressed | RLE | ZIP1 | ZIP16 | PIZ | PXR24 => Ok(()),
+        other => Err(Error::Unsupported(format!(
+            "{name}: {other} compression; none, RLE, ZIP, PIZ and PXR24 are read"
+        ))),
+    }
 }
 
 fn refusal(name: &str, error: &::exr::error::Error) -> Error {

@@ -14,8 +14,7 @@ use std::path::Path;
 use twinlight_core::{Error, Result};
 
 /// The bytes of an EXR file: every channel of `image` (ZIP over 16 lines, lossless) and `metadata` as text attributes
-/// of the header, their names behind [`NAMESPACE`]. The same input gives the same bytes. Characters outside Latin-1 become `?`, as the format has no
-/// encoding.
+/// of the header, their names behind [`NAMESPACE`]. The same input gives the same bytes.
 ///
 /// # Errors
 /// [`Error::InvalidInput`] for an inconsistent image, an empty or too long name or one that occurs twice.
@@ -25,7 +24,7 @@ pub fn encode(image: &LayeredImage, metadata: &[(&str, &str)]) -> Result<Vec<u8>
     for &(key, value) in metadata {
         check_key(key)?;
         let previous =
-            attributes.other.insert(latin(&format!("{NAMESPACE}{key}")), AttributeValue::Text(latin(value)));
+            attributes.other.insert(text(&format!("{NAMESPACE}{key}")), AttributeValue::Text(text(value)));
         if previous.is_some() {
             return Err(Error::invalid(format!("attribute '{key}'"), "occurs twice"));
         }
@@ -35,7 +34,7 @@ pub fn encode(image: &LayeredImage, metadata: &[(&str, &str)]) -> Result<Vec<u8>
             Samples::F32(v) => FlatSamples::F32(v.clone()),
             Samples::U32(v) => FlatSamples::U32(v.clone()),
         };
-        AnyChannel::new(latin(&channel.name), samples)
+        AnyChannel::new(text(&channel.name), samples)
     });
     let encoding = Encoding {
         compression: Compression::ZIP16,
@@ -47,7 +46,6 @@ pub fn encode(image: &LayeredImage, metadata: &[(&str, &str)]) -> Result<Vec<u8>
     let mut bytes = Cursor::new(Vec::new());
     Image::from_layer(layer)
         .write()
-        .non_parallel()
         .to_buffered(&mut bytes)
         .map_err(|e| Error::invalid("image", format!("EXR: {e}")))?;
     let mut bytes = bytes.into_inner();
@@ -71,7 +69,7 @@ fn check_key(key: &str) -> Result<()> {
     Ok(())
 }
 
-fn latin(text: &str) -> Text {
-    let bytes = text.chars().map(|c| u8::try_from(u32::from(c)).unwrap_or(b'?')).collect();
-    Text::from_bytes_unchecked(bytes)
+/// The format leaves the encoding open; other readers take UTF-8.
+fn text(text: &str) -> Text {
+    Text::from_slice_unchecked(text.as_bytes())
 }

@@ -1,0 +1,12 @@
+//! EXR: whatever the bytes, the reader returns.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use twinlight::io::image;
+use twinlight_core::scene::Limits;
+
+fuzz_target!(|bytes: &[u8]| {
+    let limits = Limits { max_bytes: 64 << 20, ..Limits::default() };
+    let _ = image::read_exr_environment(bytes, "fuzz.exr", &limits);
+    let _ = image::exr::read_attributes(bytes, "fuzz.exr", &limits);
+});
