@@ -133,14 +133,14 @@ impl Backend for CpuBackend {
     }
 
     fn sort_u32(&self, keys: &mut CpuBuffer<u32>, payload: &mut CpuBuffer<u32>) -> Result<()> {
-        let (keys, payload) = (keys.as_mut_slice(), payload.as_mut_slice());
+        let (keys, payload) = (keys.as_mut_vec(), payload.as_mut_vec());
         check_equal("sort_u32 payload", payload.len(), keys.len())?;
         check_limit("pairs to sort", keys.len(), sort::MAX_LEN)?;
         self.run("sort_u32", || kernels::sort::sort(keys, payload))
     }
 
     fn sort_u64(&self, keys: &mut CpuBuffer<u64>, payload: &mut CpuBuffer<u32>) -> Result<()> {
-        let (keys, payload) = (keys.as_mut_slice(), payload.as_mut_slice());
+        let (keys, payload) = (keys.as_mut_vec(), payload.as_mut_vec());
         check_equal("sort_u64 payload", payload.len(), keys.len())?;
         check_limit("pairs to sort", keys.len(), sort::MAX_LEN)?;
         self.run("sort_u64", || kernels::sort::sort(keys, payload))

@@ -17,6 +17,11 @@ impl<T> CpuBuffer<T> {
     pub fn as_mut_slice(&mut self) -> &mut [T] {
         &mut self.0
     }
+
+    /// The vector itself, whose memory a kernel may exchange.
+    pub(crate) fn as_mut_vec(&mut self) -> &mut Vec<T> {
+        &mut self.0
+    }
 }
 
 impl<T> From<Vec<T>> for CpuBuffer<T> {

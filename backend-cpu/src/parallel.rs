@@ -1,10 +1,9 @@
-//! Deterministic parallel loops: chunks of fixed size whatever the number of threads, results by index.
+//! Deterministic parallel loops: chunks whose size doesn't depend on the number of threads, results by index.
 
 use crate::simd::{Isa, Kernel, dispatch};
 use rayon::prelude::*;
-
-/// Elements per chunk of 32-bit words: 128 KiB, so that input and output of one chunk stay in a core's L2 cache.
-pub(crate) const CHUNK: usize = 1 << 15;
+use std::marker::PhantomData;
+use std::sync::{Mutex, PoisonError};
 
 /// Elements per task of [`fill_chunks`]: enough to hide the cost of a task, few enough to balance uneven rays.
 const FILL_CHUNK: usize = 256;
@@ -21,4 +20,51 @@ pub(crate) fn fill_chunks<'a, T, K>(
     out.par_chunks_mut(FILL_CHUNK)
         .enumerate()
         .for_each(|(chunk, elements)| dispatch(isa, kernel(chunk * FILL_CHUNK, elements)));
+}
+
+/// Hands the items to the pool's threads one at a time and strictly in order: when an item is begun, every earlier one
+/// has been.
+pub(crate) fn in_order<I>(items: I, work: impl Fn(I::Item) + Sync)
+where
+    I: Iterator + Send,
+    I::Item: Send,
+{
+    let queue = Mutex::new(items);
+    let drain = || {
+        loop {
+            // The lock is released before the work: a panic in it can't poison the queue.
+            let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+            match next {
+                Some(item) => work(item),
+                None => return,
+            }
+        }
+    };
+    rayon::scope(|scope| (0..rayon::current_num_threads()).for_each(|_| scope.spawn(|_| drain())));
+}
+
+/// A slice that threads write to at places that they know to be theirs alone.
+pub(crate) struct Scattered<'a, T> {
+    start: *mut T,
+    len: usize,
+    borrow: PhantomData<&'a mut [T]>,
+}
+
+// SAFETY: a Scattered only hands out a raw pointer; who writes through it promises that no two threads write the same
+// element. T: Send makes writing from another thread sound.
+unsafe impl<T: Send> Sync for Scattered<'_, T> {}
+
+impl<'a, T> Scattered<'a, T> {
+    pub(crate) fn new(slice: &'a mut [T]) -> Self {
+        Self { start: slice.as_mut_ptr(), len: slice.len(), borrow: PhantomData }
+    }
+
+    /// First element. Writing needs a promise that no other thread reads or writes the same elements meanwhile.
+    pub(crate) fn as_ptr(&self) -> *mut T {
+        self.start
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.len
+    }
 }
