@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Bytes moved, for n elements: memcpy reads 4n and writes 4n. `scan` reads 4n from memory and writes 4n, and reads 4n
-//! once more from cache.
+//! once more from cache. A sort's working memory is there already, as in every call of a backend but the first.
 
 mod support;
 

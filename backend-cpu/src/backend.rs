@@ -1,6 +1,7 @@
 //! [`CpuBackend`]: checks the caller's lengths, then runs a kernel in a thread pool and turns a panic into an error.
 
 use crate::buffer::{CpuBuffer, try_copy, try_zeroed};
+use crate::scratch::Scratch;
 use crate::simd::Isa;
 use crate::{CpuScene, kernels, processor, simd};
 use bytemuck::Pod;
@@ -18,10 +19,12 @@ use twinlight_core::{Backend, BackendInfo, Error, Result};
 /// Most threads a pool of our own may have.
 const MAX_THREADS: usize = 1024;
 
-/// Every kernel on the host's processor. Clones share the thread pool.
+/// Every kernel on the host's processor. Clones share the thread pool and the working memory, which stays as large as
+/// the largest sort has needed (8 bytes per 32-bit pair, 12 per 64-bit pair) until the last clone is dropped.
 #[derive(Debug, Clone)]
 pub struct CpuBackend {
     pool: Option<Arc<ThreadPool>>,
+    scratch: Arc<Scratch>,
     isa: Isa,
 }
 
@@ -34,7 +37,7 @@ impl Default for CpuBackend {
 impl CpuBackend {
     /// Uses the rayon pool of the calling thread: the caller's own, or the global one.
     pub fn new() -> Self {
-        Self { pool: None, isa: simd::detect() }
+        Self { pool: None, scratch: Arc::default(), isa: simd::detect() }
     }
 
     /// Starts a pool of `threads` threads.
@@ -54,7 +57,7 @@ impl CpuBackend {
             .thread_name(|i| format!("twinlight-{i}"))
             .build()
             .map_err(|e| Error::BackendUnavailable { tried: format!("cpu with {threads} threads: {e}") })?;
-        Ok(Self { pool: Some(Arc::new(pool)), isa: simd::detect() })
+        Ok(Self { pool: Some(Arc::new(pool)), scratch: Arc::default(), isa: simd::detect() })
     }
 
     /// The same backend on the instructions of `isa`, if this machine has them. The bits stay the same.
@@ -133,17 +136,17 @@ impl Backend for CpuBackend {
     }
 
     fn sort_u32(&self, keys: &mut CpuBuffer<u32>, payload: &mut CpuBuffer<u32>) -> Result<()> {
-        let (keys, payload) = (keys.as_mut_vec(), payload.as_mut_vec());
+        let (keys, payload) = (keys.as_mut_slice(), payload.as_mut_slice());
         check_equal("sort_u32 payload", payload.len(), keys.len())?;
         check_limit("pairs to sort", keys.len(), sort::MAX_LEN)?;
-        self.run("sort_u32", || kernels::sort::sort(keys, payload))
+        self.run("sort_u32", || kernels::sort::sort(keys, payload, &self.scratch))
     }
 
     fn sort_u64(&self, keys: &mut CpuBuffer<u64>, payload: &mut CpuBuffer<u32>) -> Result<()> {
-        let (keys, payload) = (keys.as_mut_vec(), payload.as_mut_vec());
+        let (keys, payload) = (keys.as_mut_slice(), payload.as_mut_slice());
         check_equal("sort_u64 payload", payload.len(), keys.len())?;
         check_limit("pairs to sort", keys.len(), sort::MAX_LEN)?;
-        self.run("sort_u64", || kernels::sort::sort(keys, payload))
+        self.run("sort_u64", || kernels::sort::sort(keys, payload, &self.scratch))
     }
 
     fn trace_closest(

@@ -1,6 +1,6 @@
 //! Typed arrays in host memory, and allocations that fail instead of aborting.
 
-use bytemuck::Pod;
+use bytemuck::Zeroable;
 use twinlight_core::{Error, Result};
 
 /// A typed array in host memory.
@@ -15,11 +15,6 @@ impl<T> CpuBuffer<T> {
 
     /// The elements, to change in place.
     pub fn as_mut_slice(&mut self) -> &mut [T] {
-        &mut self.0
-    }
-
-    /// The vector itself, whose memory a kernel may exchange.
-    pub(crate) fn as_mut_vec(&mut self) -> &mut Vec<T> {
         &mut self.0
     }
 }
@@ -44,7 +39,7 @@ pub(crate) fn try_copy<T: Clone>(data: &[T]) -> Result<Vec<T>> {
 }
 
 /// `len` zeroed elements, from pages that the system zeroes when they are first touched.
-pub(crate) fn try_zeroed<T: Pod>(len: usize) -> Result<Vec<T>> {
+pub(crate) fn try_zeroed<T: Zeroable>(len: usize) -> Result<Vec<T>> {
     match bytemuck::allocation::try_zeroed_slice_box(len) {
         Ok(zeroes) => Ok(Vec::from(zeroes)),
         Err(()) => Err(out_of_memory::<T>(len)),

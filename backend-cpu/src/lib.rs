@@ -25,6 +25,7 @@ mod kernels;
 mod parallel;
 mod processor;
 mod scene;
+mod scratch;
 pub mod simd;
 mod tracer;
 

@@ -50,21 +50,23 @@ pub(crate) struct Scattered<'a, T> {
     borrow: PhantomData<&'a mut [T]>,
 }
 
-// SAFETY: a Scattered only hands out a raw pointer; who writes through it promises that no two threads write the same
-// element. T: Send makes writing from another thread sound.
+// SAFETY: elements are only ever written, by `write`, whose caller promises that no two threads write the same one.
+// T: Send makes writing from another thread sound.
 unsafe impl<T: Send> Sync for Scattered<'_, T> {}
 
-impl<'a, T> Scattered<'a, T> {
+impl<'a, T: Copy> Scattered<'a, T> {
     pub(crate) fn new(slice: &'a mut [T]) -> Self {
         Self { start: slice.as_mut_ptr(), len: slice.len(), borrow: PhantomData }
     }
 
-    /// First element. Writing needs a promise that no other thread reads or writes the same elements meanwhile.
-    pub(crate) fn as_ptr(&self) -> *mut T {
-        self.start
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.len
+    /// Writes one element.
+    ///
+    /// # Safety
+    /// `index` is inside the slice, and no other thread writes the same element meanwhile.
+    #[inline(always)]
+    pub(crate) unsafe fn write(&self, index: usize, value: T) {
+        debug_assert!(index < self.len);
+        // SAFETY: the caller's promise; the slice is borrowed mutably for as long as this lives.
+        unsafe { self.start.add(index).write(value) }
     }
 }
