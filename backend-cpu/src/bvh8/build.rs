@@ -1,5 +1,6 @@
-//! Collapses a binary hierarchy into an eight-wide one.
+//! Makes an eight-wide hierarchy of a binary one.
 
+use super::collapse::Collapse;
 use super::node::{CHILDREN, LEAF, Node};
 use super::pack::{PACK, Pack};
 use super::{NO_SLOT, WideBvh};
@@ -12,7 +13,7 @@ use twinlight_core::transport::intersect::padded_bounds;
 enum Content {
     /// A node of the binary hierarchy.
     Binary(u32),
-    /// Slots whose hierarchy ends here: a leaf too big for a pack, or a subtree too deep.
+    /// Slots whose hierarchy ends here: of a leaf too big for a pack, or of a subtree too deep.
     Slots(Vec<u32>),
 }
 
@@ -22,17 +23,9 @@ struct Item {
     content: Content,
 }
 
-impl Item {
-    fn area(&self) -> f32 {
-        let d = self.max - self.min;
-        (d.x * d.y + d.y * d.z) + d.z * d.x
-    }
-}
-
 struct Builder<'a> {
     scene: &'a CompiledScene,
-    /// Triangles below each binary node.
-    counts: Vec<u32>,
+    collapse: Collapse,
     wide: WideBvh,
 }
 
@@ -46,7 +39,7 @@ impl WideBvh {
             slots: vec![NO_SLOT; PACK],
             ids: vec![u32::MAX; PACK],
         };
-        let mut builder = Builder { scene, counts: subtree_counts(scene), wide };
+        let mut builder = Builder { scene, collapse: Collapse::new(&scene.bvh), wide };
         if !scene.bvh.nodes.is_empty() {
             builder.run();
         }
@@ -54,27 +47,19 @@ impl WideBvh {
     }
 }
 
-/// Children come after their parents, so one pass from the back sees both before it sees the parent.
-fn subtree_counts(scene: &CompiledScene) -> Vec<u32> {
-    let nodes = &scene.bvh.nodes;
-    let mut counts = vec![0_u32; nodes.len()];
-    for (index, node) in nodes.iter().enumerate().rev() {
-        let first = node.first as usize;
-        counts[index] = if node.count > 0 { node.count } else { counts[first] + counts[first + 1] };
-    }
-    counts
-}
-
 impl Builder<'_> {
     fn run(&mut self) {
         let mut pending = vec![(self.binary(0), 0_usize, 0_u32)];
+        let mut children = Vec::with_capacity(CHILDREN);
+        let mut slots = Vec::new();
         while let Some((item, to, depth)) = pending.pop() {
-            let children = self.open(item, depth);
+            self.open(item, depth, &mut children);
             let mut node = Node::EMPTY;
-            for (lane, child) in children.into_iter().enumerate() {
+            for (lane, child) in children.drain(..).enumerate() {
                 let (min, max) = (child.min, child.max);
-                let reference = if self.count(&child) as usize <= PACK {
-                    self.add_pack(&child)
+                let reference = if self.is_pack(&child) {
+                    self.slots(&child.content, &mut slots);
+                    self.add_pack(&slots)
                 } else {
                     let index = self.wide.nodes.len();
                     self.wide.nodes.push(Node::EMPTY);
@@ -92,20 +77,21 @@ impl Builder<'_> {
         Item { min: node.min.into(), max: node.max.into(), content: Content::Binary(index) }
     }
 
-    fn count(&self, item: &Item) -> u32 {
+    fn is_pack(&self, item: &Item) -> bool {
         match &item.content {
-            Content::Binary(index) => self.counts[*index as usize],
-            Content::Slots(slots) => slots.len() as u32,
+            Content::Binary(index) => self.collapse.is_pack(*index),
+            Content::Slots(slots) => slots.len() <= PACK,
         }
     }
 
     /// Slots below an item, in leaf order.
-    fn slots(&self, item: &Item) -> Vec<u32> {
-        let root = match &item.content {
-            Content::Slots(slots) => return slots.clone(),
+    fn slots(&self, content: &Content, slots: &mut Vec<u32>) {
+        slots.clear();
+        let root = match content {
+            Content::Slots(own) => return slots.extend(own),
             Content::Binary(index) => *index,
         };
-        let (mut slots, mut stack) = (Vec::new(), vec![root]);
+        let mut stack = vec![root];
         while let Some(index) = stack.pop() {
             let node = &self.scene.bvh.nodes[index as usize];
             if node.count > 0 {
@@ -114,43 +100,30 @@ impl Builder<'_> {
                 stack.extend([node.first + 1, node.first]);
             }
         }
-        slots
     }
 
-    /// Up to eight items that together hold what `item` holds: the one with the largest surface is replaced by its two
-    /// children until eight are there. An item that fits a pack stays whole.
-    fn open(&self, item: Item, depth: u32) -> Vec<Item> {
-        let mut items = Vec::with_capacity(CHILDREN);
-        match &item.content {
-            Content::Slots(slots) => return self.eighths(slots),
-            Content::Binary(_) if depth >= MAX_DEPTH => return self.eighths(&self.slots(&item)),
-            Content::Binary(index) if self.scene.bvh.nodes[*index as usize].count as usize > PACK => {
-                return self.eighths(&self.slots(&item));
-            }
-            Content::Binary(_) => items.push(item),
+    /// Up to eight items that together hold what `item` holds.
+    fn open(&self, item: Item, depth: u32, children: &mut Vec<Item>) {
+        let Content::Binary(index) = item.content else {
+            return self.eighths(&item.content, children);
+        };
+        let leaf = self.scene.bvh.nodes[index as usize].count > 0;
+        if leaf && self.collapse.is_pack(index) {
+            children.push(item);
+        } else if leaf || depth >= MAX_DEPTH {
+            self.eighths(&item.content, children);
+        } else {
+            let mut add = |child| children.push(self.binary(child));
+            self.collapse.children(&self.scene.bvh, index, &mut add);
         }
-        while items.len() < CHILDREN {
-            let widest = (0..items.len())
-                .filter_map(|i| self.inner(&items[i]).map(|children| (i, children)))
-                .max_by(|a, b| items[a.0].area().total_cmp(&items[b.0].area()));
-            let Some((i, first)) = widest else { break };
-            items[i] = self.binary(first);
-            items.push(self.binary(first + 1));
-        }
-        items
     }
 
-    /// First child of an item that can be opened.
-    fn inner(&self, item: &Item) -> Option<u32> {
-        let Content::Binary(index) = item.content else { return None };
-        let node = &self.scene.bvh.nodes[index as usize];
-        (node.count == 0 && self.counts[index as usize] as usize > PACK).then_some(node.first)
-    }
-
-    /// Eight equal shares of `slots`.
-    fn eighths(&self, slots: &[u32]) -> Vec<Item> {
+    /// Eight equal shares of an item's slots.
+    fn eighths(&self, content: &Content, children: &mut Vec<Item>) {
+        let mut slots = Vec::new();
+        self.slots(content, &mut slots);
         let share = slots.len().div_ceil(CHILDREN).max(PACK);
-        slots.chunks(share).map(|chunk| self.slot_item(chunk.to_vec())).collect()
+        children.extend(slots.chunks(share).map(|chunk| self.slot_item(chunk.to_vec())));
     }
 
     fn slot_item(&self, slots: Vec<u32>) -> Item {
@@ -163,8 +136,7 @@ impl Builder<'_> {
         Item { min, max, content: Content::Slots(slots) }
     }
 
-    fn add_pack(&mut self, item: &Item) -> u32 {
-        let slots = self.slots(item);
+    fn add_pack(&mut self, slots: &[u32]) -> u32 {
         let mut pack = Pack::EMPTY;
         for lane in 0..PACK {
             let Some(&slot) = slots.get(lane) else {

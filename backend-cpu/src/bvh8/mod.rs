@@ -7,6 +7,7 @@
 //! by a ray that meets them.
 
 mod build;
+mod collapse;
 mod node;
 mod pack;
 mod traverse;

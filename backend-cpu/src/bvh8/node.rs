@@ -26,12 +26,14 @@ pub(super) struct Node {
     pub bounds: [[f32; CHILDREN]; 6],
     /// Node or pack ([`LEAF`]). An absent child is pack 0, which is empty: rays with a NaN may get there.
     pub children: [u32; CHILDREN],
+    /// Bit i: child i is a pack.
+    pub packs: u32,
 }
 
 impl Node {
     pub(super) const EMPTY: Node = {
         let (lo, hi) = ([f32::INFINITY; CHILDREN], [f32::NEG_INFINITY; CHILDREN]);
-        Node { bounds: [lo, hi, lo, hi, lo, hi], children: [LEAF; CHILDREN] }
+        Node { bounds: [lo, hi, lo, hi, lo, hi], children: [LEAF; CHILDREN], packs: 0xff }
     };
 
     /// Number of children.
@@ -45,6 +47,9 @@ impl Node {
             self.bounds[2 * axis + 1][lane] = max[axis];
         }
         self.children[lane] = child;
+        if child & LEAF == 0 {
+            self.packs &= !(1 << lane);
+        }
     }
 }
 

@@ -165,26 +165,26 @@ impl WideBvh {
         let pack_ray = PackRay::new(width, &frame, t_min);
         let mut entries: Entries = [MaybeUninit::uninit(); MAX_STACK];
         let mut stack = Stack::new(&mut entries);
-        let mut current = 0_u32;
-        loop {
-            if current & LEAF == 0 {
-                let node = self.node(current);
-                let (mask, enter) = node_ray.meet(width, node, t_max);
-                if let Some(child) = nearest_child(&mut stack, node, mask, enter) {
-                    current = child;
-                    continue;
-                }
-            } else {
-                let (_, pack) = self.pack(current);
-                if pack_ray.meet(width, pack, t_max).is_some_and(|hits| hits.mask != 0) {
+        stack.push(0);
+        // No order: what is met first ends the search, and packs, which may end it, are tested before nodes.
+        while let Some(reference) = stack.pop() {
+            let node = self.node(reference as u32);
+            let (mask, _) = node_ray.meet(width, node, t_max);
+            let mut packs = mask & node.packs;
+            while packs != 0 {
+                let (_, pack) = self.pack(take_child(node, &mut packs));
+                if let Some(hits) = pack_ray.meet(width, pack, t_max)
+                    && hits.mask != 0
+                {
                     return true;
                 }
             }
-            match stack.pop() {
-                Some(entry) => current = entry as u32,
-                None => return false,
+            let mut nodes = mask & !node.packs;
+            while nodes != 0 {
+                stack.push(u64::from(take_child(node, &mut nodes)));
             }
         }
+        false
     }
 
     /// Takes over what is nearer, or as near with a lower id.
@@ -247,11 +247,11 @@ fn nearest_child<L: Lanes<Array = [f32; 8]>>(
         return None;
     }
     let enters = enter.to_array();
-    let first = take_child(node, &enters, &mut mask);
+    let first = take_entry(node, &enters, &mut mask);
     if mask == 0 {
         return Some(first as u32);
     }
-    let second = take_child(node, &enters, &mut mask);
+    let second = take_entry(node, &enters, &mut mask);
     let (nearer, farther) = if first < second { (first, second) } else { (second, first) };
     if mask == 0 {
         stack.push(farther);
@@ -261,7 +261,7 @@ fn nearest_child<L: Lanes<Array = [f32; 8]>>(
     stack.push(farther);
     stack.push(nearer);
     while mask != 0 {
-        stack.push(take_child(node, &enters, &mut mask));
+        stack.push(take_entry(node, &enters, &mut mask));
         stack.sink_last(base);
     }
     stack.pop().map(|entry| entry as u32)
@@ -269,8 +269,15 @@ fn nearest_child<L: Lanes<Array = [f32; 8]>>(
 
 /// The stack entry of the lowest child in `mask`, which is cleared there.
 #[inline(always)]
-fn take_child(node: &Node, enters: &[f32; 8], mask: &mut u32) -> u64 {
+fn take_entry(node: &Node, enters: &[f32; 8], mask: &mut u32) -> u64 {
+    let i = mask.trailing_zeros() as usize & 7;
+    u64::from(enters[i].to_bits()) << 32 | u64::from(take_child(node, mask))
+}
+
+/// The lowest child in `mask`, which is cleared there.
+#[inline(always)]
+fn take_child(node: &Node, mask: &mut u32) -> u32 {
     let i = mask.trailing_zeros() as usize & 7;
     *mask &= *mask - 1;
-    u64::from(enters[i].to_bits()) << 32 | u64::from(node.children[i])
+    node.children[i]
 }
