@@ -15,8 +15,9 @@ mod options;
 pub mod ply;
 pub mod resolve;
 mod text;
+pub mod toml_scene;
 
 pub use atomic::write_file;
 pub use complete::complete;
-pub use load::load;
+pub use load::{load, load_with_settings};
 pub use options::LoadOptions;

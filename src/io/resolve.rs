@@ -153,6 +153,19 @@ pub(crate) fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// The error of reading `path`, as seen from the `place` that refers to it.
+pub(crate) fn refused(error: Error, place: &str, what: &str, path: &str) -> Error {
+    let path = super::text::shown(path.as_bytes());
+    match error {
+        Error::Io { source, .. } => Error::invalid(place, format!("{what} '{path}' can't be read: {source}")),
+        Error::InvalidInput { place: reference, what } => {
+            Error::invalid(place, format!("{reference}: {what}"))
+        }
+        Error::Unsupported(what) => Error::Unsupported(format!("{place}: {what}")),
+        other => other,
+    }
+}
+
 fn canonical(path: &Path) -> Result<PathBuf> {
     path.canonicalize().map_err(|source| Error::Io { path: path.to_path_buf(), source })
 }

@@ -3,7 +3,7 @@
 use super::material::{self, Adjustments};
 use super::mtl::{self, MtlMaterial};
 use crate::io::LoadOptions;
-use crate::io::resolve::Files;
+use crate::io::resolve::{Files, refused};
 use crate::io::text::{self, Token};
 use std::collections::BTreeMap;
 use twinlight_core::scene::{Material, Texture};
@@ -70,18 +70,11 @@ impl<'a> Library<'a> {
     ) -> Result<Option<Vec<u8>>> {
         match files.read_path(name) {
             Ok(bytes) => Ok(Some(bytes)),
-            Err(Error::Io { source, .. }) => {
-                let text = format!("{what} '{}' can't be read: {source}", text::shown(name.as_bytes()));
-                if self.options.strict {
-                    return Err(Error::invalid(place, text));
-                }
-                self.notices.push(format!("{place}: {text}"));
+            Err(missing @ Error::Io { .. }) if !self.options.strict => {
+                self.notices.push(refused(missing, place, what, name).to_string());
                 Ok(None)
             }
-            Err(Error::InvalidInput { place: reference, what }) => {
-                Err(Error::invalid(place, format!("{reference} {what}")))
-            }
-            Err(other) => Err(other),
+            Err(error) => Err(refused(error, place, what, name)),
         }
     }
 
