@@ -6,6 +6,9 @@ use twinlight_core::scene::{COORDINATE_LIMIT, Camera, Light, Scene};
 /// Side of the made-up light, over its distance from what it lights: large enough for soft shadows.
 const LIGHT_SIZE: f64 = 0.2;
 
+/// Least distance to what is lit: a scene that is a single point still gets a light with an area.
+const SMALLEST: f64 = 1e-6;
+
 /// Gives a scene without a camera one that frames it, and a scene without light a rectangle beside the camera, each with
 /// a notice.
 ///
@@ -37,7 +40,8 @@ fn beside_camera(camera: &Camera, (lo, hi): (DVec3, DVec3)) -> Option<Light> {
     let right = forward.cross(up).try_normalize()?;
     let up = right.cross(forward);
     // A target may be any point on the axis; what is seen is about as far as the scene is large.
-    let distance = (target - eye).length().min((hi - lo).length()).max((hi - lo).length() * 0.25);
+    let extent = (hi - lo).length();
+    let distance = (target - eye).length().min(extent).max(extent * 0.25).max(SMALLEST);
     let side = LIGHT_SIZE * distance;
     let corner = eye - right * (side * 0.5);
     let narrow = |v: DVec3| v.as_vec3().to_array();

@@ -362,10 +362,10 @@ fn name_after<'t>(
 fn corner(token: Token<'_>, counts: [usize; 3], name: &str) -> Result<[Option<usize>; 3]> {
     const OF: [&str; 3] = ["vertex", "texture coordinate", "normal"];
     let mut indices = [None; 3];
+    if token.bytes.iter().filter(|&&b| b == b'/').count() > 2 {
+        return Err(token.error(name, format!("'{}' is not of the form v/vt/vn", token.shown())));
+    }
     for (i, part) in token.bytes.split(|&b| b == b'/').enumerate() {
-        if i == 3 {
-            return Err(token.error(name, format!("'{}' is not of the form v/vt/vn", token.shown())));
-        }
         if part.is_empty() {
             continue;
         }

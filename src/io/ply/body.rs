@@ -56,9 +56,11 @@ impl<'a> Body<'a> {
     /// The next value, which counts a list's items of type `item`.
     pub fn count(&mut self, count: ScalarType, item: ScalarType) -> Result<usize> {
         let value = self.scalar(count)?;
-        let least = if self.encoding == Encoding::Ascii { 2 } else { item.size() };
-        // An ASCII file may end without a separator after its last value.
-        let room = (self.left() + 1) / least as u64;
+        let room = match self.encoding {
+            // A separator and a digit each.
+            Encoding::Ascii => self.left() / 2,
+            _ => self.left() / item.size() as u64,
+        };
         if value >= 0.0 && value <= room as f64 {
             return Ok(value as usize);
         }

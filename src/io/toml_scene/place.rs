@@ -28,7 +28,8 @@ pub(super) fn transform(table: &InstanceTable, source: &Source<'_>) -> Result<Tr
         }
     };
     let determinant = transform.determinant();
-    if !(transform.linear.is_finite() && transform.translation.is_finite()) || determinant == 0.0 {
+    let finite = transform.linear.is_finite() && transform.translation.is_finite() && determinant.is_finite();
+    if !finite || determinant == 0.0 {
         let what = format!("the placement flattens the mesh or is not finite (determinant {determinant})");
         return Err(source.error(&at, what));
     }

@@ -1,0 +1,6 @@
+//! See `drive`.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let _ = drive::mtl(bytes);
+});

@@ -1,0 +1,87 @@
+//! Scenes that come without a camera or light can be seen all the same.
+
+use crate::read;
+use twinlight::io::{LoadOptions, complete};
+use twinlight_core::scene::{Camera, Light, Scene, compile};
+
+fn triangle() -> Scene {
+    read("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", &[], &LoadOptions::default()).unwrap()
+}
+
+#[test]
+fn a_bare_mesh_gets_a_camera_and_a_light_with_notices() {
+    let mut scene = triangle();
+    complete(&mut scene);
+    let camera = scene.camera.unwrap();
+    let [Light::Rectangle { corner, edge_u, edge_v, .. }] = scene.lights[..] else {
+        panic!("{:?}", scene.lights)
+    };
+    let [corner, u, v] = [corner, edge_u, edge_v].map(glam::Vec3::from);
+    let axis = (glam::DVec3::from(camera.target) - glam::DVec3::from(camera.position)).as_vec3();
+    let eye = glam::DVec3::from(camera.position).as_vec3();
+    assert!(u.cross(v).dot(axis) > 0.0, "the light faces what the camera sees");
+    // The plane of the eye up to f32 rounding of coordinates about as large as the scene.
+    assert!(
+        (corner - eye).dot(axis.normalize()).abs() < 1e-5,
+        "the light lies in the plane of the eye, out of view"
+    );
+    assert!(corner.distance(eye) < u.length() && u.dot(glam::DVec3::from(camera.up).as_vec3()) > 0.0);
+    assert_eq!(scene.notices.len(), 2, "{:?}", scene.notices);
+    compile(&scene, &LoadOptions::default().limits).unwrap();
+    let before = scene.clone();
+    complete(&mut scene);
+    assert_eq!(scene, before, "nothing is missing any more");
+}
+
+#[test]
+fn a_room_keeps_its_camera_and_is_lit_inside() {
+    let mut scene = twinlight::io::builtin::load("cornell").unwrap();
+    let camera = Camera {
+        position: [278.0, 273.0, 100.0],
+        target: [278.0, 273.0, 101.0],
+        up: [0.0, 1.0, 0.0],
+        vfov_degrees: 60.0,
+    };
+    scene.camera = Some(camera);
+    scene.lights.clear();
+    scene.materials.iter_mut().for_each(|m| m.emission = [0.0; 3]);
+    complete(&mut scene);
+    assert_eq!(scene.camera, Some(camera));
+    let [Light::Rectangle { corner, edge_u, edge_v, .. }] = scene.lights[..] else {
+        panic!("{:?}", scene.lights)
+    };
+    let [corner, u, v] = [corner, edge_u, edge_v].map(glam::Vec3::from);
+    let (lo, hi) = scene.bounds().unwrap();
+    let middle = (corner + (u + v) * 0.5).as_dvec3();
+    assert!(middle.cmpgt(lo).all() && middle.cmplt(hi).all(), "{middle}");
+}
+
+#[test]
+fn nothing_to_see_is_no_failure() {
+    let mut scene = Scene::default();
+    complete(&mut scene);
+    assert!(scene.camera.is_some() && scene.lights.is_empty());
+    let mut lit = triangle();
+    lit.lights.push(Light::Point { position: [0.0; 3], intensity: [1.0; 3] });
+    complete(&mut lit);
+    assert_eq!(lit.lights.len(), 1);
+}
+
+#[test]
+fn a_scene_of_one_point_gets_a_light_with_an_area() {
+    let mut scene = read("a.obj", "v 7 7 7\nf 1 1 1\n", &[], &LoadOptions::default()).unwrap();
+    complete(&mut scene);
+    scene.validate(&LoadOptions::default().limits).unwrap();
+    assert_eq!(scene.lights.len(), 1);
+}
+
+#[test]
+fn vertices_that_are_no_numbers_do_not_move_the_camera() {
+    let mut scene = triangle();
+    complete(&mut scene);
+    let expected = scene.camera;
+    let mut broken = triangle();
+    broken.meshes[0].positions.extend([[f32::NAN; 3], [f32::INFINITY, 0.0, 0.0], [3e38, 0.0, 0.0]]);
+    complete(&mut broken);
+    assert_eq!(broken.camera, expected);
+}
