@@ -1,5 +1,5 @@
-//! Hostile OBJ, MTL, PLY and TOML files: the fuzz targets' seeds and seeded mutations of it go through every reader. None panics, and none
-//! takes more memory than the limits allow.
+//! Hostile OBJ, MTL, PLY and TOML files: the fuzz targets' seeds and seeded mutations of them go through every reader.
+//! None panics, and none takes more memory than the limits allow.
 #![cfg(feature = "io")]
 
 #[path = "../fuzz/src/drive.rs"]
