@@ -84,3 +84,10 @@ fn glb_has_its_nodes_in_place() {
     let brightest = scene.materials.iter().map(|m| m.emission[0]).fold(0.0, f32::max);
     assert_eq!(brightest, 3.0);
 }
+
+#[test]
+fn cornell_toml_is_the_builtin_with_its_camera() {
+    let (file, builtin) = (read("cornell-box/cornell-box.toml"), scenes::cornell());
+    assert_eq!(triangles(&file), triangles(&builtin));
+    assert_eq!(file.camera, builtin.camera);
+}
