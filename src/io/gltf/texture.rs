@@ -33,7 +33,8 @@ impl UvTransform {
     fn new(offset: [f32; 2], rotation: f32, scale: [f32; 2]) -> Self {
         let (sin, cos) = f64::from(rotation).sin_cos();
         let [su, sv] = scale.map(f64::from);
-        // v points down, so that this turns counter-clockwise for positive angles, as the extension asks.
+        // v points down, so that this turns counter-clockwise for positive angles, as the extension's text asks. Its GLSL
+        // sample turns the other way (KhronosGroup/glTF issue 1563); its test model and other readers follow the text.
         Self { linear: [[cos * su, sin * sv], [-sin * su, cos * sv]], offset: offset.map(f64::from) }
     }
 
