@@ -3,7 +3,7 @@
 
 use super::environment::sample_environment;
 use super::intersect::sphere;
-use super::offset::{POSITION_ERROR, offset_origin};
+use super::offset::{offset_origin, triangle_error};
 use super::{PI, SceneView};
 use crate::math::hash::to_index;
 use crate::math::trig::sin_cos_turns;
@@ -149,7 +149,7 @@ fn sample_triangle(scene: &SceneView<'_>, index: u32, from: Vec3, u: f32, v: f32
     let b = p1 * b0;
     let c = p2 * b1;
     let point = (a + b) + c;
-    let error = ((a.abs() + b.abs()) + c.abs()) * POSITION_ERROR;
+    let error = triangle_error(p0, p1, p2, a, b, c);
     let to_light = point - from;
     let squared = to_light.dot(to_light);
     let direction = normalized(to_light);

@@ -1,7 +1,7 @@
 //! From a hit to what is shaded. Twin: `backend-gpu/src/shared/surface.wgsl`.
 
 use super::SceneView;
-use super::offset::POSITION_ERROR;
+use super::offset::triangle_error;
 use super::texture::sample_texture;
 use crate::kernels::trace_paths::CameraRecord;
 use crate::math::vector::{normalized, normalized_any};
@@ -50,7 +50,7 @@ pub fn surface_at(scene: &SceneView<'_>, slot: u32, u: f32, v: f32, direction: V
     let b = p1 * u;
     let c = p2 * v;
     let position = (a + b) + c;
-    let error = ((a.abs() + b.abs()) + c.abs()) * POSITION_ERROR;
+    let error = triangle_error(p0, p1, p2, a, b, c);
     let winding = normalized_any((p1 - p0).cross(p2 - p0));
     let front = winding.dot(direction) < 0.0;
     let geometric_normal = if front { winding } else { -winding };

@@ -3,3 +3,4 @@
 mod bsdf;
 mod chi_squared;
 mod light;
+mod offset;
