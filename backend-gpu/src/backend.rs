@@ -2,14 +2,15 @@
 
 use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
-use crate::kernels::{scan, sort};
+use crate::kernels::{scan, shade_primary, sort, trace, trace_paths};
+use crate::scene::GpuScene;
 use crate::strict::Mode;
 use bytemuck::Pod;
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
 use twinlight_core::scene::CompiledScene;
-use twinlight_core::{Backend, BackendInfo, Error, Result};
+use twinlight_core::{Backend, BackendInfo, Result};
 
 /// The kernels in WGSL on one device.
 #[derive(Debug, Clone)]
@@ -17,15 +18,11 @@ pub struct GpuBackend {
     device: GpuDevice,
 }
 
-/// A scene on a device.
-#[derive(Debug)]
-pub struct GpuScene {}
-
 impl GpuBackend {
     /// Opens a device; see [`GpuDevice::open`].
     ///
     /// # Errors
-    /// [`Error::BackendUnavailable`], [`Error::Unsupported`].
+    /// [`twinlight_core::Error::BackendUnavailable`], [`twinlight_core::Error::Unsupported`].
     pub fn open(options: &DeviceOptions) -> Result<Self> {
         GpuDevice::open(options).map(Self::new)
     }
@@ -38,10 +35,6 @@ impl GpuBackend {
     /// The device.
     pub fn device(&self) -> &GpuDevice {
         &self.device
-    }
-
-    fn without_twin<T>(&self, kernel: &str) -> Result<T> {
-        Err(Error::Unsupported(format!("{kernel} has no WGSL twin in this build; use the CPU backend")))
     }
 }
 
@@ -77,8 +70,8 @@ impl Backend for GpuBackend {
         buffer.len()
     }
 
-    fn upload_scene(&self, _scene: &CompiledScene) -> Result<GpuScene> {
-        self.without_twin("upload_scene")
+    fn upload_scene(&self, scene: &CompiledScene) -> Result<GpuScene> {
+        GpuScene::new(&self.device, scene)
     }
 
     fn scan(&self, input: &GpuBuffer<u32>, output: &mut GpuBuffer<u32>) -> Result<u32> {
@@ -93,24 +86,39 @@ impl Backend for GpuBackend {
         sort::run(&self.device, keys, payload)
     }
 
-    fn trace_closest(&self, _: &GpuScene, _: &GpuBuffer<Ray>, _: &mut GpuBuffer<Hit>) -> Result<()> {
-        self.without_twin("trace_closest")
+    fn trace_closest(
+        &self,
+        scene: &GpuScene,
+        rays: &GpuBuffer<Ray>,
+        hits: &mut GpuBuffer<Hit>,
+    ) -> Result<()> {
+        trace::closest(&self.device, scene, rays, hits)
     }
 
-    fn trace_any(&self, _: &GpuScene, _: &GpuBuffer<Ray>, _: &mut GpuBuffer<u32>) -> Result<()> {
-        self.without_twin("trace_any")
+    fn trace_any(
+        &self,
+        scene: &GpuScene,
+        rays: &GpuBuffer<Ray>,
+        occluded: &mut GpuBuffer<u32>,
+    ) -> Result<()> {
+        trace::any(&self.device, scene, rays, occluded)
     }
 
     fn shade_primary(
         &self,
-        _: &GpuScene,
-        _: &ShadePrimaryParams,
-        _: &mut GpuBuffer<GBufferTexel>,
+        scene: &GpuScene,
+        params: &ShadePrimaryParams,
+        gbuffer: &mut GpuBuffer<GBufferTexel>,
     ) -> Result<()> {
-        self.without_twin("shade_primary")
+        shade_primary::run(&self.device, scene, params, gbuffer)
     }
 
-    fn trace_paths(&self, _: &GpuScene, _: &TracePathsParams, _: &mut GpuBuffer<FilmTexel>) -> Result<()> {
-        self.without_twin("trace_paths")
+    fn trace_paths(
+        &self,
+        scene: &GpuScene,
+        params: &TracePathsParams,
+        film: &mut GpuBuffer<FilmTexel>,
+    ) -> Result<()> {
+        trace_paths::run(&self.device, scene, params, film)
     }
 }

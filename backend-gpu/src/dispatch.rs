@@ -41,7 +41,7 @@ impl GpuDevice {
 impl<'a> Recorder<'a> {
     /// Appends a dispatch of `workgroups` workgroups.
     ///
-    /// `buffers` names every storage variable of the entry point; `params` fills `var<uniform> params`. More workgroups
+    /// `buffers` names every storage variable of the entry point, and may name others; `params` fills `var<uniform> params`. More workgroups
     /// than one dimension holds are folded into rows of equal length, so the last row may be longer than needed: the
     /// kernel takes `workgroup_id.y * num_workgroups.x + workgroup_id.x` as its index and returns beyond its count.
     ///
@@ -79,9 +79,6 @@ impl<'a> Recorder<'a> {
             };
             self.expect_bindable(&binding.name, buffer)?;
             bound.push((binding.binding, buffer));
-        }
-        if bound.len() != buffers.len() {
-            return Err(self.misuse(label, "a buffer that the kernel does not use"));
         }
         let workgroups = fold(workgroups, self.device.report().limits.workgroups_per_dimension)?;
         let pipeline = Arc::clone(pipeline);

@@ -14,11 +14,14 @@ pub mod dispatch;
 pub mod kernels;
 pub mod pipeline;
 pub mod reflect;
+pub mod scene;
+pub mod shared;
 pub mod source;
 pub mod strict;
 
 pub use adapter::{AdapterLimits, AdapterReport, AdapterSelector, adapters};
-pub use backend::{GpuBackend, GpuScene};
+pub use backend::GpuBackend;
 pub use buffer::GpuBuffer;
 pub use device::{DeviceOptions, GpuDevice};
+pub use scene::GpuScene;
 pub use strict::Mode;

@@ -4,8 +4,13 @@
 //! is misspelt; one that is left out shows as a WGSL field that nothing answers to.
 
 use std::mem::{offset_of, size_of};
-use twinlight_backend_gpu::kernels::{self, scan, sort};
+use twinlight_backend_gpu::kernels::{self, scan, shade_primary, sort, trace, trace_paths};
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
+use twinlight_core::kernels::{
+    shade_primary as shade_contract, trace as trace_contract, trace_paths as paths_contract,
+};
+use twinlight_core::transport::{intersect, light, offset};
+use twinlight_core::{bvh, math, scene, transport};
 
 /// A Rust struct: name, size, and its fields with their offsets.
 struct Layout {
@@ -14,13 +19,16 @@ struct Layout {
     fields: Vec<(&'static str, usize)>,
 }
 
-/// `layout!(Type { field, … })`, fields in the order of the WGSL struct of the same name.
+/// `layout!(Type { field, … })`, fields in the order of the WGSL struct of the same name. `field as other` where WGSL
+/// reserves the word.
 macro_rules! layout {
-    ($module:ident :: $name:ident { $($field:ident),* $(,)? }) => {
+    (@name $field:ident) => { stringify!($field) };
+    (@name $field:ident $wgsl:ident) => { stringify!($wgsl) };
+    ($module:ident :: $name:ident { $($field:ident $(as $wgsl:ident)?),* $(,)? }) => {
         Layout {
             name: stringify!($name),
             size: size_of::<$module::$name>(),
-            fields: vec![$((stringify!($field), offset_of!($module::$name, $field))),*],
+            fields: vec![$((layout!(@name $field $($wgsl)?), offset_of!($module::$name, $field))),*],
         }
     };
 }
@@ -28,7 +36,25 @@ macro_rules! layout {
 struct Twins {
     source: &'static KernelSource,
     structs: Vec<Layout>,
-    constants: Vec<(&'static str, u32)>,
+    constants: Vec<(&'static str, Constant)>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Constant {
+    U32(u32),
+    F32(f32),
+}
+
+impl From<u32> for Constant {
+    fn from(value: u32) -> Self {
+        Self::U32(value)
+    }
+}
+
+impl From<f32> for Constant {
+    fn from(value: f32) -> Self {
+        Self::F32(value)
+    }
 }
 
 fn twins() -> Vec<Twins> {
@@ -36,18 +62,168 @@ fn twins() -> Vec<Twins> {
         Twins {
             source: &scan::SOURCE,
             structs: vec![layout!(scan::ScanParams { count, tile_count })],
-            constants: vec![("TILE_SIZE", scan::TILE_SIZE)],
+            constants: vec![("TILE_SIZE", scan::TILE_SIZE.into())],
         },
         Twins {
             source: &sort::SOURCE,
             structs: vec![layout!(sort::SortParams { count, tile_count, key_words, word, shift })],
             constants: vec![
-                ("TILE_SIZE", sort::TILE_SIZE),
-                ("DIGIT_BITS", sort::DIGIT_BITS),
-                ("DIGITS", sort::DIGITS),
+                ("TILE_SIZE", sort::TILE_SIZE.into()),
+                ("DIGIT_BITS", sort::DIGIT_BITS.into()),
+                ("DIGITS", sort::DIGITS.into()),
             ],
         },
+        Twins {
+            source: &trace::SOURCE,
+            structs: with_scene(vec![
+                layout!(trace::TraceParams { ray_count, loop_rounds }),
+                layout!(trace_contract::Ray { origin, t_min, direction, t_max }),
+                layout!(trace_contract::Hit { t, triangle, u, v }),
+            ]),
+            constants: with_intersection(vec![("WORKGROUP_SIZE", trace::WORKGROUP_SIZE.into())]),
+        },
+        Twins {
+            source: &shade_primary::SOURCE,
+            structs: with_camera(vec![
+                layout!(shade_primary::ShadePrimaryBlock {
+                    call,
+                    environment,
+                    loop_rounds,
+                    padding_a,
+                    padding_b,
+                    padding_c,
+                }),
+                layout!(shade_contract::ShadePrimaryParams { camera, width, height, padding }),
+                layout!(shade_contract::GBufferTexel {
+                    position,
+                    depth,
+                    geometric_normal,
+                    triangle,
+                    shading_normal,
+                    material,
+                    albedo,
+                    padding,
+                }),
+            ]),
+            constants: with_lights(vec![("WORKGROUP_SIZE", shade_primary::WORKGROUP_SIZE.into())]),
+        },
+        Twins {
+            source: &trace_paths::SOURCE,
+            structs: with_camera(vec![
+                layout!(trace_paths::TracePathsBlock {
+                    call,
+                    environment,
+                    segment,
+                    alive_word,
+                    loop_rounds,
+                    padding,
+                }),
+                layout!(trace_paths::PathState {
+                    origin,
+                    pdf,
+                    direction,
+                    vertices,
+                    throughput,
+                    alive,
+                    direct,
+                    padding_a,
+                    indirect,
+                    padding_b,
+                }),
+                layout!(paths_contract::TracePathsParams {
+                    camera, width, height, pixel_begin, pixel_count, sample_begin, sample_count, seed, max_bounces,
+                    roulette_begin, sampler as sampler_kind, film_exponent, moment_exponent,
+                }),
+                layout!(paths_contract::FilmTexel { direct, indirect, luminance_squared, samples, rejected }),
+            ]),
+            constants: with_lights(vec![
+                ("WORKGROUP_SIZE", trace_paths::WORKGROUP_SIZE.into()),
+                ("VERTICES_PER_DISPATCH", trace_paths::VERTICES_PER_DISPATCH.into()),
+                ("SAMPLER_SOBOL", paths_contract::SAMPLER_SOBOL.into()),
+                ("PAIRS_PER_VERTEX", paths_contract::PAIRS_PER_VERTEX.into()),
+                ("MAX_SURVIVAL", paths_contract::MAX_SURVIVAL.into()),
+                ("INV_PI", transport::INV_PI.into()),
+                ("MATERIAL_OPAQUE", scene::MATERIAL_OPAQUE.into()),
+                ("MATERIAL_MIRROR", scene::MATERIAL_MIRROR.into()),
+                ("MATERIAL_DIELECTRIC", scene::MATERIAL_DIELECTRIC.into()),
+                ("OUT_OF_RANGE", math::fixed::OUT_OF_RANGE[0].into()),
+            ]),
+        },
     ]
+}
+
+/// The structs of `shared/scene.wgsl`.
+fn with_scene(mut structs: Vec<Layout>) -> Vec<Layout> {
+    structs.extend([
+        layout!(bvh::BvhNode { min, first, max, count }),
+        layout!(scene::Triangle { p0, id, p1, material, p2, light }),
+        layout!(scene::TriangleAttributes { n0, flags, n1, uv2_v, n2, uv2_u, uv0, uv1 }),
+        layout!(scene::MaterialRecord {
+            albedo, kind, specular_f0, alpha, emission, flags, specular_f90, ior, smith_k, texture_offset,
+            texture_width, texture_height, texture_wrap, padding,
+        }),
+        layout!(scene::LightRecord {
+            position, kind, direction, radius, emission, select_pdf, alias_threshold, alias as alias_light, triangle,
+            flags, spot_scale, spot_offset, area, padding,
+        }),
+        layout!(scene::EnvironmentHeader {
+            world_to_map, offset, width, height, light, light_count, sphere_count, padding,
+        }),
+    ]);
+    structs
+}
+
+/// Those, and the struct of `shared/surface.wgsl`.
+fn with_camera(mut structs: Vec<Layout>) -> Vec<Layout> {
+    structs.push(layout!(paths_contract::CameraRecord {
+        position,
+        padding_a,
+        corner,
+        padding_b,
+        step_x,
+        padding_c,
+        step_y,
+        padding_d,
+        forward,
+        padding_e,
+    }));
+    with_scene(structs)
+}
+
+type Constants = Vec<(&'static str, Constant)>;
+
+/// The constants of `shared/intersect.wgsl` and `shared/traverse.wgsl`.
+fn with_intersection(mut constants: Constants) -> Constants {
+    constants.extend([
+        ("MIN_DIRECTION", intersect::MIN_DIRECTION.into()),
+        ("SLAB_FAR_FACTOR", intersect::SLAB_FAR_FACTOR.into()),
+        ("PAD_EXTENT", intersect::PAD_EXTENT.into()),
+        ("PAD_COORDINATE", intersect::PAD_COORDINATE.into()),
+        ("STACK", (bvh::MAX_DEPTH + 1).into()),
+        ("NONE", scene::NONE.into()),
+        ("NONE", trace_contract::NO_HIT.into()),
+    ]);
+    constants
+}
+
+/// Those, and what `shared/{offset,surface,light}.wgsl` use.
+fn with_lights(mut constants: Constants) -> Constants {
+    constants.extend([
+        ("POSITION_ERROR", offset::POSITION_ERROR.into()),
+        ("FAR", light::FAR.into()),
+        ("SHADOW_REACH", light::SHADOW_REACH.into()),
+        ("PI", transport::PI.into()),
+        ("HAS_NORMALS", scene::HAS_NORMALS.into()),
+        ("HAS_TEXCOORDS", scene::HAS_TEXCOORDS.into()),
+        ("EMITS_BOTH_SIDES", scene::EMITS_BOTH_SIDES.into()),
+        ("LIGHT_SPHERE", scene::LIGHT_SPHERE.into()),
+        ("LIGHT_TRIANGLE", scene::LIGHT_TRIANGLE.into()),
+        ("LIGHT_POINT", scene::LIGHT_POINT.into()),
+        ("LIGHT_SPOT", scene::LIGHT_SPOT.into()),
+        ("LIGHT_DIRECTIONAL", scene::LIGHT_DIRECTIONAL.into()),
+        ("LIGHT_ENVIRONMENT", scene::LIGHT_ENVIRONMENT.into()),
+    ]);
+    with_intersection(constants)
 }
 
 #[test]
@@ -100,7 +276,7 @@ fn workgroup_sizes_are_those_of_the_constants() {
         let checked = twins.source.check().unwrap_or_else(|error| panic!("{error}"));
         for entry_point in &checked.module.entry_points {
             let size: u32 = entry_point.workgroup_size.iter().product();
-            if let Err(difference) = compare_constant(&checked, "WORKGROUP_SIZE", size) {
+            if let Err(difference) = compare_constant(&checked, "WORKGROUP_SIZE", size.into()) {
                 panic!("{} / {}: {difference}", twins.source.stem, entry_point.name);
             }
         }
@@ -112,6 +288,7 @@ fn a_wrong_twin_is_named() {
     const TEXT: &str = "
 struct Probe { a: u32, b: vec3<f32>, c: u32 }
 const SIZE: u32 = 3u;
+const WIDTH: f32 = 0.1f;
 @group(0) @binding(0) var<uniform> params: Probe;
 @compute @workgroup_size(1) fn probe() { _ = params.a; }";
     let source = KernelSource { stem: "probe", files: &[WgslFile { path: "probe.wgsl", text: TEXT }] };
@@ -128,9 +305,11 @@ const SIZE: u32 = 3u;
     for (result, expected) in wrong {
         assert_eq!(result, Err(format!("Probe: {expected}")));
     }
-    assert_eq!(compare_constant(&checked, "SIZE", 3), Ok(()));
-    assert!(compare_constant(&checked, "SIZE", 4).is_err());
-    assert!(compare_constant(&checked, "ABSENT", 4).is_err());
+    assert_eq!(compare_constant(&checked, "SIZE", 3.into()), Ok(()));
+    assert_eq!(compare_constant(&checked, "WIDTH", 0.1.into()), Ok(()));
+    assert!(compare_constant(&checked, "SIZE", 4.into()).is_err());
+    assert!(compare_constant(&checked, "WIDTH", 0.1_f32.next_up().into()).is_err());
+    assert!(compare_constant(&checked, "ABSENT", 4.into()).is_err());
 }
 
 fn compare_struct(checked: &CheckedModule, layout: &Layout) -> Result<(), String> {
@@ -160,14 +339,24 @@ fn compare_struct(checked: &CheckedModule, layout: &Layout) -> Result<(), String
     Ok(())
 }
 
-fn compare_constant(checked: &CheckedModule, name: &str, value: u32) -> Result<(), String> {
+fn compare_constant(checked: &CheckedModule, name: &str, value: Constant) -> Result<(), String> {
     let module = &checked.module;
     let found = module.constants.iter().find(|(_, constant)| constant.name.as_deref() == Some(name));
     let Some((_, constant)) = found else {
         return Err(format!("{name}: no such constant in WGSL"));
     };
-    match module.global_expressions[constant.init] {
-        naga::Expression::Literal(naga::Literal::U32(wgsl)) if wgsl == value => Ok(()),
-        ref wgsl => Err(format!("{name} is {wgsl:?} in WGSL, {value} in Rust")),
+    let mut init = constant.init;
+    // A vector is compared by its first component.
+    while let naga::Expression::Compose { ref components, .. } = module.global_expressions[init] {
+        init = components[0];
+    }
+    match (&module.global_expressions[init], value) {
+        (naga::Expression::Literal(naga::Literal::U32(wgsl)), Constant::U32(rust)) if *wgsl == rust => Ok(()),
+        (naga::Expression::Literal(naga::Literal::F32(wgsl)), Constant::F32(rust))
+            if wgsl.to_bits() == rust.to_bits() =>
+        {
+            Ok(())
+        }
+        (wgsl, _) => Err(format!("{name} is {wgsl:?} in WGSL, {value:?} in Rust")),
     }
 }

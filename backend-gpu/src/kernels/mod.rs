@@ -4,9 +4,14 @@
 //! `backend.rs`. The tests `sources` and `layout` find it through [`ALL`].
 
 pub mod scan;
+pub mod shade_primary;
 pub mod sort;
+mod status;
+pub mod trace;
+pub mod trace_paths;
 
 use crate::source::KernelSource;
 
 /// Every kernel's source, in pipeline order.
-pub const ALL: &[&KernelSource] = &[&scan::SOURCE, &sort::SOURCE];
+pub const ALL: &[&KernelSource] =
+    &[&scan::SOURCE, &sort::SOURCE, &trace::SOURCE, &shade_primary::SOURCE, &trace_paths::SOURCE];

@@ -6,6 +6,7 @@ mod device;
 mod scan;
 mod sort;
 mod strict;
+mod transport;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use std::process::ExitCode;
@@ -30,7 +31,8 @@ type Check = fn(&Target) -> Result<(), Failed>;
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
-    let checks: Vec<(&str, Check)> = [device::CHECKS, scan::CHECKS, sort::CHECKS, strict::CHECKS].concat();
+    let checks: Vec<(&str, Check)> =
+        [device::CHECKS, scan::CHECKS, sort::CHECKS, strict::CHECKS, transport::CHECKS].concat();
     let reports = adapters();
     let mut trials = Vec::new();
     for (index, report) in reports.iter().enumerate() {

@@ -1,0 +1,94 @@
+// kernel family: trace
+// contract core/src/kernels/trace.rs
+// cpu backend-cpu/src/kernels/trace.rs
+// gpu backend-gpu/src/kernels/trace.wgsl
+// oracle conformance/src/oracle/trace.rs
+//! Host side of `trace`.
+
+use crate::buffer::{BufferRef, GpuBuffer};
+use crate::device::GpuDevice;
+use crate::kernels::status;
+use crate::scene::GpuScene;
+use crate::shared;
+use crate::source::{KernelSource, WgslFile};
+use bytemuck::{Pod, Zeroable};
+use twinlight_core::kernels::trace::{Hit, Ray};
+use twinlight_core::{Error, Result};
+
+/// The WGSL.
+pub const SOURCE: KernelSource = KernelSource {
+    stem: "trace",
+    files: &[
+        shared::DISPATCH,
+        shared::SCENE,
+        shared::VECTOR,
+        shared::TRIG,
+        shared::INTERSECT,
+        shared::TRAVERSE,
+        WgslFile { path: "backend-gpu/src/kernels/trace.wgsl", text: include_str!("trace.wgsl") },
+    ],
+};
+
+/// Rays per workgroup; twin of the WGSL constant.
+pub const WORKGROUP_SIZE: u32 = 64;
+
+/// Twin of the WGSL struct.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct TraceParams {
+    /// Number of rays.
+    pub ray_count: u32,
+    /// For `loops_run`.
+    pub loop_rounds: u32,
+}
+
+/// Closest hits; see the contract.
+///
+/// # Errors
+/// [`Error::InvalidInput`] when the lengths differ, [`Error::LimitExceeded`] beyond a binding's size,
+/// [`Error::Unsupported`] when the driver ends loops early.
+pub fn closest(
+    device: &GpuDevice,
+    scene: &GpuScene,
+    rays: &GpuBuffer<Ray>,
+    hits: &mut GpuBuffer<Hit>,
+) -> Result<()> {
+    run(device, scene, rays, "trace_closest", ("hits", hits.binding()), hits.len())
+}
+
+/// Occlusion; see the contract.
+///
+/// # Errors
+/// As [`closest`].
+pub fn any(
+    device: &GpuDevice,
+    scene: &GpuScene,
+    rays: &GpuBuffer<Ray>,
+    occluded: &mut GpuBuffer<u32>,
+) -> Result<()> {
+    run(device, scene, rays, "trace_any", ("blocked", occluded.binding()), occluded.len())
+}
+
+fn run(
+    device: &GpuDevice,
+    scene: &GpuScene,
+    rays: &GpuBuffer<Ray>,
+    entry_point: &'static str,
+    result: (&'static str, BufferRef<'_>),
+    result_len: usize,
+) -> Result<()> {
+    if rays.len() != result_len {
+        return Err(Error::invalid(entry_point, format!("{} rays, {result_len} results", rays.len())));
+    }
+    let ray_count = u32::try_from(rays.len())
+        .map_err(|_| Error::limit("rays of one call", rays.len() as u64, u32::MAX.into()))?;
+    let pipeline = device.pipeline(&SOURCE, entry_point)?;
+    let status = status::new(device)?;
+    let params = TraceParams { ray_count, loop_rounds: status::LOOP_ROUNDS };
+    let buffers = scene.buffers_and(&[("rays", rays.binding()), ("status", status.binding()), result]);
+    let mut recorder = device.record("trace rays");
+    recorder.dispatch(entry_point, &pipeline, &params, &buffers, ray_count.div_ceil(WORKGROUP_SIZE))?;
+    recorder.run()?;
+    status::read(device, &status, entry_point)?;
+    Ok(())
+}

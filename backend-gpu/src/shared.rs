@@ -1,0 +1,49 @@
+//! The WGSL files that kernels share: twins of `twinlight_core::math` and `twinlight_core::transport` under the same
+//! stems, and what the GPU alone needs.
+
+use crate::source::WgslFile;
+
+macro_rules! shared {
+    ($($(#[$doc:meta])* $name:ident = $stem:literal;)*) => {
+        $(
+            $(#[$doc])*
+            pub const $name: WgslFile = WgslFile {
+                path: concat!("backend-gpu/src/shared/", $stem, ".wgsl"),
+                text: include_str!(concat!("shared/", $stem, ".wgsl")),
+            };
+        )*
+    };
+}
+
+shared! {
+    /// Twin of `transport::bsdf`.
+    BSDF = "bsdf";
+    /// Dispatches of any size, loops that end early.
+    DISPATCH = "dispatch";
+    /// Twin of `transport::environment`; wants `params.environment`.
+    ENVIRONMENT = "environment";
+    /// Twin of `math::fixed`.
+    FIXED = "fixed";
+    /// Twin of `math::hash`.
+    HASH = "hash";
+    /// Twin of `transport::intersect`.
+    INTERSECT = "intersect";
+    /// Twin of `transport::light`; wants `params.environment`.
+    LIGHT = "light";
+    /// Twin of `transport::offset`.
+    OFFSET = "offset";
+    /// Twin of `scene::compiled`, and the scene's bindings.
+    SCENE = "scene";
+    /// Twin of `math::sobol`.
+    SOBOL = "sobol";
+    /// Twin of `transport::surface`.
+    SURFACE = "surface";
+    /// Twin of `transport::texture`.
+    TEXTURE = "texture";
+    /// Closest and any hit.
+    TRAVERSE = "traverse";
+    /// Twin of `math::trig`.
+    TRIG = "trig";
+    /// Twin of `math::vector`.
+    VECTOR = "vector";
+}
