@@ -44,15 +44,10 @@ fn nudged(x: f32, toward: f32) -> f32 {
 
 /// A point on the side of the surface that `direction` leaves to, so far from `position` that the true surface, within
 /// `error` (absolute, per axis), isn't met again.
-///
-/// Deviation from PBRT: the largest error counts for every axis. A floor at y = 0 has no error in y, but the distance to
-/// it is computed from corners far away in x and z, and would come out as 10⁻⁸ instead of 0 for one ray in forty.
 #[inline(always)]
 pub fn offset_origin(position: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     let a = normal.abs();
-    let xy = if error.x > error.y { error.x } else { error.y };
-    let largest = if xy > error.z { xy } else { error.z };
-    let distance = ((a.x + a.y) + a.z) * largest;
+    let distance = a.dot(error);
     let side = if direction.dot(normal) < 0.0 { -distance } else { distance };
     let offset = normal * side;
     let moved = position + offset;
