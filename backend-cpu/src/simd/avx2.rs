@@ -1,6 +1,6 @@
 //! Eight lanes in an AVX register.
 
-use super::sse2::{F4, prefetch};
+use super::sse2::F4;
 use super::{Kernel, LaneMask, Lanes, Width};
 use std::arch::x86_64::{
     __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_cmp_ps, _mm256_div_ps,
@@ -41,11 +41,6 @@ pub(super) fn run<K: Kernel>(width: Avx2, kernel: K) -> K::Output {
 impl Width for Avx2 {
     type F4 = F4<Avx2>;
     type F8 = F8;
-
-    #[inline(always)]
-    fn prefetch<T>(self, address: *const T) {
-        prefetch(address);
-    }
 }
 
 /// Eight lanes. Only made from an [`Avx2`], or from other lanes.

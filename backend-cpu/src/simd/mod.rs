@@ -59,9 +59,6 @@ pub trait Width: Copy + Send + Sync {
     type F4: Lanes<Token = Self, Array = [f32; 4]>;
     /// Eight lanes.
     type F8: Lanes<Token = Self, Array = [f32; 8]>;
-
-    /// Asks for the cache line at `address`; no effect on results.
-    fn prefetch<T>(self, address: *const T);
 }
 
 /// Instruction sets that can be asked for by name.

@@ -10,9 +10,6 @@ pub struct Portable;
 impl Width for Portable {
     type F4 = Array<4>;
     type F8 = Array<8>;
-
-    #[inline(always)]
-    fn prefetch<T>(self, _address: *const T) {}
 }
 
 /// N lanes.

@@ -3,9 +3,8 @@
 use super::pair::Pair;
 use super::{LaneMask, Lanes, Width};
 use std::arch::x86_64::{
-    __m128, _MM_HINT_T0, _mm_add_ps, _mm_and_ps, _mm_cmple_ps, _mm_cmplt_ps, _mm_div_ps, _mm_loadu_ps,
-    _mm_max_ps, _mm_min_ps, _mm_movemask_ps, _mm_mul_ps, _mm_or_ps, _mm_prefetch, _mm_set1_ps, _mm_storeu_ps,
-    _mm_sub_ps, _mm_xor_ps,
+    __m128, _mm_add_ps, _mm_and_ps, _mm_cmple_ps, _mm_cmplt_ps, _mm_div_ps, _mm_loadu_ps, _mm_max_ps,
+    _mm_min_ps, _mm_movemask_ps, _mm_mul_ps, _mm_or_ps, _mm_set1_ps, _mm_storeu_ps, _mm_sub_ps, _mm_xor_ps,
 };
 use std::marker::PhantomData;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
@@ -17,17 +16,6 @@ pub struct Sse2;
 impl Width for Sse2 {
     type F4 = F4<Sse2>;
     type F8 = Pair<F4<Sse2>>;
-
-    #[inline(always)]
-    fn prefetch<T>(self, address: *const T) {
-        prefetch(address);
-    }
-}
-
-#[inline(always)]
-pub(super) fn prefetch<T>(address: *const T) {
-    // SAFETY: a prefetch reads nothing and faults nowhere, whatever the address.
-    unsafe { _mm_prefetch::<_MM_HINT_T0>(address.cast()) }
 }
 
 /// Four lanes; `W` is the token of the width it serves, so that AVX2 code can use it too.
