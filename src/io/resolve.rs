@@ -3,8 +3,13 @@
 //! Scene files come from strangers. A reference that leaves the folder (by `..`, an absolute path, a symbolic link or a
 //! URL) is an error that names the reference; sizes are checked before anything is read.
 
+mod memory;
+mod uri;
+
+pub use memory::MemoryFiles;
+pub use uri::percent_decoded;
+
 use super::LoadOptions;
-use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
@@ -204,81 +209,4 @@ fn lexical(path: &Path) -> PathBuf {
         }
     }
     plain
-}
-
-/// Decodes `%XX`.
-///
-/// # Errors
-/// [`Error::InvalidInput`] naming the URI when a `%` is not followed by two hexadecimal digits, or the decoded bytes
-/// are not UTF-8.
-pub fn percent_decoded(uri: &str) -> Result<String> {
-    let place = || format!("URI '{}'", super::text::shown(uri.as_bytes()));
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.as_bytes();
-    while let [first, tail @ ..] = rest {
-        rest = tail;
-        if *first != b'%' {
-            bytes.push(*first);
-            continue;
-        }
-        let digits = tail.first_chunk::<2>().map(|d| d.map(|b| char::from(b).to_digit(16)));
-        let Some([Some(high), Some(low)]) = digits else {
-            let at = uri.len() - tail.len() - 1;
-            return Err(Error::invalid(
-                place(),
-                format!("'%' at byte {at} is not followed by two hexadecimal digits"),
-            ));
-        };
-        bytes.push((high * 16 + low) as u8);
-        rest = &tail[2..];
-    }
-    String::from_utf8(bytes).map_err(|_| Error::invalid(place(), "its percent-encoding is not UTF-8"))
-}
-
-/// Files kept in memory, for tests, fuzzing and embedders: path to bytes, `/` as separator.
-#[derive(Debug, Clone, Default)]
-pub struct MemoryFiles {
-    files: Arc<BTreeMap<String, Vec<u8>>>,
-    base: String,
-}
-
-impl MemoryFiles {
-    /// The files by path.
-    pub fn new(files: impl IntoIterator<Item = (String, Vec<u8>)>) -> Self {
-        Self { files: Arc::new(files.into_iter().collect()), base: String::new() }
-    }
-
-    fn locate(&self, path: &str) -> Result<String> {
-        let refuse = |what: &str| Err(Error::invalid(format!("reference '{path}'"), what));
-        let relative = checked(path)?;
-        let mut parts: Vec<String> =
-            self.base.split('/').filter(|p| !p.is_empty()).map(String::from).collect();
-        for component in relative.components() {
-            match component {
-                Component::Normal(part) => parts.push(part.to_string_lossy().into_owned()),
-                Component::CurDir => {}
-                Component::ParentDir if parts.pop().is_some() => {}
-                _ => return refuse("lies outside the scene's folder"),
-            }
-        }
-        Ok(parts.join("/"))
-    }
-}
-
-impl Files for MemoryFiles {
-    fn read_path(&self, path: &str) -> Result<Vec<u8>> {
-        let key = self.locate(path)?;
-        let missing = || Error::Io { path: PathBuf::from(&key), source: std::io::ErrorKind::NotFound.into() };
-        self.files.get(&key).cloned().ok_or_else(missing)
-    }
-
-    fn beside(&self, path: &str) -> Result<Box<dyn Files>> {
-        let file = self.locate(path)?;
-        let base = file.rsplit_once('/').map_or("", |(folder, _)| folder).to_owned();
-        Ok(Box::new(Self { files: self.files.clone(), base }))
-    }
-
-    fn identity(&self, path: &str) -> Result<String> {
-        self.locate(path)
-    }
 }

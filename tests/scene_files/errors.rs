@@ -162,6 +162,8 @@ fn toml_errors_name_line_column_and_value() {
         ),
         ("[[mesh]]\npath = 'm.stl'\n".into(), "unsupported: s.toml:2:8: 'm.stl': scene files end in .obj"),
         ("[[mesh]]\npath = 's.toml'\n".into(), "s.toml:2:8: 's.toml' includes itself"),
+        ("[environment]\nradiance = -1\n".into(), "s.toml:1:1: radiance -1 is negative"),
+        ("[environment]\nradiance = 1\nscale = inf\n".into(), "s.toml:1:1: scale inf is negative, too large"),
         ("[environment]\nscale = 2\n".into(), "s.toml:1:1: an environment needs either 'file' or 'radiance'"),
     ];
     for (text, expected) in cases {

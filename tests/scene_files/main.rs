@@ -4,6 +4,7 @@
 mod completion;
 mod errors;
 mod folders;
+mod limits;
 mod obj;
 mod ply;
 mod toml_scenes;

@@ -5,10 +5,11 @@
 //! the file has defined so far, names line, column and value of the first bad one, and passes on only what tobj handles
 //! well: three numbers per vertex, faces of one kind per group, groups and materials by number.
 
+use super::corner::{self, push_integer};
+use super::left_out::LeftOut;
 use super::library::Library;
 use crate::io::LoadOptions;
 use crate::io::text::{self, Line, Token};
-use std::collections::BTreeMap;
 use twinlight_core::{Error, Result};
 
 /// Statements that draw something other than faces.
@@ -38,6 +39,13 @@ const WITHOUT_EFFECT: [&str; 17] = [
 ];
 const USED: [&str; 8] = ["v", "vt", "vn", "f", "o", "g", "mtllib", "usemtl"];
 
+/// What a face costs while tobj holds it, beside its corners: the face itself, and an allocation for a polygon's.
+const BYTES_PER_FACE: u64 = 128;
+/// What a corner costs at most: its indices, a vertex with all attributes, and its entry in tobj's map.
+const BYTES_PER_CORNER: u64 = 128;
+/// What a group costs: its mesh and instance with their names.
+const BYTES_PER_GROUP: u64 = 1024;
+
 /// Text for tobj, and what its numbers stand for.
 #[derive(Debug, Default)]
 pub(super) struct Checked {
@@ -66,6 +74,7 @@ pub(super) fn check(
         checked: Checked::default(),
         counts: [0; 3],
         recognised: false,
+        bytes: 0,
         left_out: LeftOut::default(),
         group: String::new(),
         kind: None,
@@ -97,17 +106,6 @@ pub(super) fn check(
     pass.finish(library)
 }
 
-/// What is left out, and how often.
-#[derive(Default)]
-struct LeftOut {
-    colors: usize,
-    small_faces: usize,
-    partial_faces: usize,
-    statements: BTreeMap<&'static str, usize>,
-    unknown: Vec<String>,
-    unknown_count: usize,
-}
-
 struct Pass<'a> {
     name: &'a str,
     options: &'a LoadOptions,
@@ -115,6 +113,8 @@ struct Pass<'a> {
     /// Positions, texture coordinates and normals so far.
     counts: [usize; 3],
     recognised: bool,
+    /// What tobj will need for the faces so far.
+    bytes: u64,
     left_out: LeftOut,
     group: String,
     /// Attributes of the faces of the group that is being written; `None` before its first face.
@@ -134,7 +134,7 @@ impl Pass<'_> {
             b"f" | b"fo" => self.face(tokens, library)?,
             b"o" | b"g" => {
                 let label = tokens.next().map(|t| line.rest_from(t).bytes).unwrap_or_default();
-                self.group = String::from_utf8_lossy(label).into_owned();
+                self.group = text::shown(label);
                 self.kind = None;
             }
             b"mtllib" => library.load(name_after(line, key, tokens, self.name)?, self.name)?,
@@ -204,17 +204,13 @@ impl Pass<'_> {
         // The line is written last: what precedes it depends on all its corners.
         let mut corners: Vec<[Option<usize>; 3]> = Vec::with_capacity(4);
         for token in tokens {
-            corners.push(corner(token, self.counts, self.name)?);
+            corners.push(corner::parse(token, self.counts, self.name)?);
         }
         if corners.len() < 3 {
             self.left_out.small_faces += 1;
             return Ok(());
         }
-        self.checked.triangles += corners.len() as u64 - 2;
-        let limit = self.options.limits.max_triangles;
-        if self.checked.triangles > limit {
-            return Err(Error::limit(format!("{}: triangles", self.name), self.checked.triangles, limit));
-        }
+        self.count(corners.len() as u64)?;
         let has = |attribute: usize| corners.iter().all(|c| c[attribute].is_some());
         let kind = (has(1), has(2));
         let partly = |attribute: usize| !has(attribute) && corners.iter().any(|c| c[attribute].is_some());
@@ -225,6 +221,26 @@ impl Pass<'_> {
             self.write_corner(c, kind);
         }
         self.end_line();
+        Ok(())
+    }
+
+    /// Counts a face against the limits.
+    fn count(&mut self, corners: u64) -> Result<()> {
+        let (checked, limits) = (&mut self.checked, &self.options.limits);
+        checked.triangles += corners - 2;
+        if checked.triangles > limits.max_triangles {
+            let what = format!("{}: triangles", self.name);
+            return Err(Error::limit(what, checked.triangles, limits.max_triangles));
+        }
+        self.bytes += BYTES_PER_FACE + BYTES_PER_CORNER * corners;
+        let needed = self.bytes + BYTES_PER_GROUP * checked.groups.len() as u64 + checked.text.len() as u64;
+        if needed > limits.max_bytes {
+            return Err(Error::limit(
+                format!("{}: bytes to read the faces", self.name),
+                needed,
+                limits.max_bytes,
+            ));
+        }
         Ok(())
     }
 
@@ -272,15 +288,17 @@ impl Pass<'_> {
             self.recognised = true;
             return Ok(());
         }
+        self.left_out.unknown_count += 1;
+        // A file that is no OBJ at all has millions of them.
+        if self.left_out.unknown_count > super::MAX_NOTICES {
+            return Ok(());
+        }
         let hint = text::did_you_mean(&key.shown(), USED);
         let what = format!("unknown statement '{}'{hint}", key.shown());
         if self.options.strict {
             return Err(key.error(self.name, what));
         }
-        self.left_out.unknown_count += 1;
-        if self.left_out.unknown.len() < super::MAX_NOTICES {
-            self.left_out.unknown.push(format!("{}: {what} ignored", key.place(self.name)));
-        }
+        self.left_out.unknown.push(format!("{}: {what} ignored", key.place(self.name)));
         Ok(())
     }
 
@@ -313,31 +331,13 @@ impl Pass<'_> {
 
     fn finish(mut self, library: &mut Library<'_>) -> Result<Checked> {
         if !self.recognised {
-            let hint =
-                self.left_out.unknown.into_iter().next().map(|n| format!(" ({n})")).unwrap_or_default();
+            let first = self.left_out.unknown.first().map(|n| format!(" ({n})")).unwrap_or_default();
             return Err(Error::invalid(
                 self.name,
-                format!("holds no OBJ statement: is this an OBJ file?{hint}"),
+                format!("holds no OBJ statement: is this an OBJ file?{first}"),
             ));
         }
-        let LeftOut { colors, small_faces, partial_faces, statements, unknown, unknown_count } =
-            self.left_out;
-        let mut counted = |count: usize, what: &str| {
-            if count > 0 {
-                library.notices.push(format!("{}: {count} {what}", self.name));
-            }
-        };
-        counted(colors, "vertex colours ignored");
-        counted(small_faces, "faces with fewer than 3 corners left out");
-        counted(
-            partial_faces,
-            "faces whose corners don't all have texture coordinates or normals: those dropped",
-        );
-        for (statement, count) in statements {
-            counted(count, &format!("'{statement}' statements left out: only faces are drawn"));
-        }
-        counted(unknown_count.saturating_sub(unknown.len()), "more unknown statements ignored");
-        library.notices.extend(unknown);
+        library.notices.extend(self.left_out.notices(self.name));
         if self.checked.triangles == 0 {
             library.notices.push(format!("{}: holds no faces", self.name));
         }
@@ -356,69 +356,4 @@ fn name_after<'t>(
         Some(first) => Ok(line.rest_from(first)),
         None => Err(key.error(name, format!("{} without a name", key.shown()))),
     }
-}
-
-/// The indices of `v/vt/vn` from 1; negative ones, which count back from the last, resolved.
-fn corner(token: Token<'_>, counts: [usize; 3], name: &str) -> Result<[Option<usize>; 3]> {
-    const OF: [&str; 3] = ["vertex", "texture coordinate", "normal"];
-    let mut indices = [None; 3];
-    if token.bytes.iter().filter(|&&b| b == b'/').count() > 2 {
-        return Err(token.error(name, format!("'{}' is not of the form v/vt/vn", token.shown())));
-    }
-    for (i, part) in token.bytes.split(|&b| b == b'/').enumerate() {
-        if part.is_empty() {
-            continue;
-        }
-        let Some(index) = integer(part) else {
-            let (part, of) = (text::shown(part), OF[i]);
-            return Err(
-                token.error(name, format!("{of} index '{part}' in '{}' is not an integer", token.shown()))
-            );
-        };
-        let count = counts[i] as i64;
-        let resolved = if index < 0 { count + 1 + index } else { index };
-        if !(1..=count).contains(&resolved) {
-            let reason = if index == 0 {
-                "indices count from 1".into()
-            } else {
-                format!("{count} are defined so far")
-            };
-            return Err(
-                token.error(name, format!("{} index {index} in '{}': {reason}", OF[i], token.shown()))
-            );
-        }
-        indices[i] = Some(resolved as usize);
-    }
-    if indices[0].is_none() {
-        return Err(token.error(name, format!("'{}' has no vertex index", token.shown())));
-    }
-    Ok(indices)
-}
-
-/// A decimal integer of at most 15 digits.
-fn integer(text: &[u8]) -> Option<i64> {
-    let (negative, digits) = match text {
-        [b'-', digits @ ..] => (true, digits),
-        [b'+', digits @ ..] => (false, digits),
-        digits => (false, digits),
-    };
-    if digits.is_empty() || digits.len() > 15 || !digits.iter().all(u8::is_ascii_digit) {
-        return None;
-    }
-    let value = digits.iter().fold(0, |n, d| n * 10 + i64::from(d - b'0'));
-    Some(if negative { -value } else { value })
-}
-
-fn push_integer(text: &mut Vec<u8>, mut value: usize) {
-    let mut digits = [0; 20];
-    let mut at = digits.len();
-    loop {
-        at -= 1;
-        digits[at] = b'0' + (value % 10) as u8;
-        value /= 10;
-        if value == 0 {
-            break;
-        }
-    }
-    text.extend_from_slice(&digits[at..]);
 }

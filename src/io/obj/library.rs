@@ -2,11 +2,11 @@
 
 use super::material::{self, Adjustments};
 use super::mtl::{self, MtlMaterial};
-use crate::io::LoadOptions;
 use crate::io::resolve::{Files, refused};
 use crate::io::text::{self, Token};
-use std::collections::BTreeMap;
-use twinlight_core::scene::{Material, Texture};
+use crate::io::{LoadOptions, image};
+use std::collections::{BTreeMap, BTreeSet};
+use twinlight_core::scene::{Limits, Material, Texture};
 use twinlight_core::{Error, Result};
 
 /// The materials met so far; indices are those of the scene.
@@ -16,6 +16,8 @@ pub(super) struct Library<'a> {
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,
     pub notices: Vec<String>,
+    /// Names of the libraries that were asked for: a statement may be repeated without end.
+    libraries: BTreeSet<String>,
     by_name: BTreeMap<String, u32>,
     texture_by_name: BTreeMap<String, Option<u32>>,
     default: Option<u32>,
@@ -30,6 +32,7 @@ impl<'a> Library<'a> {
             materials: Vec::new(),
             textures: Vec::new(),
             notices: Vec::new(),
+            libraries: BTreeSet::new(),
             by_name: BTreeMap::new(),
             texture_by_name: BTreeMap::new(),
             default: None,
@@ -45,6 +48,9 @@ impl<'a> Library<'a> {
         let several = words.len() > 1 && words.iter().all(|w| w.to_ascii_lowercase().ends_with(".mtl"));
         let names = if several { words } else { vec![names.as_str()] };
         for name in names {
+            if !self.libraries.insert(name.to_owned()) {
+                continue;
+            }
             if let Some(bytes) = self.fetch(name, &label.place(obj), "material library")? {
                 let materials = mtl::parse(&bytes, name, self.options, &mut self.notices)?;
                 let files = self.files.beside(name)?;
@@ -71,7 +77,9 @@ impl<'a> Library<'a> {
         match files.read_path(name) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(missing @ Error::Io { .. }) if !self.options.strict => {
-                self.notices.push(refused(missing, place, what, name).to_string());
+                if self.notices.len() < super::MAX_NOTICES {
+                    self.notices.push(refused(missing, place, what, name).to_string());
+                }
                 Ok(None)
             }
             Err(error) => Err(refused(error, place, what, name)),
@@ -85,7 +93,8 @@ impl<'a> Library<'a> {
         }
         let index = self.materials.len() as u32;
         self.materials.push(material);
-        if self.by_name.insert(mtl.name.clone(), index).is_some() {
+        let again = self.by_name.insert(mtl.name.clone(), index).is_some();
+        if again && self.notices.len() < super::MAX_NOTICES {
             self.notices.push(format!(
                 "{}: material '{}' is defined again; the later one counts",
                 mtl.place, mtl.name
@@ -101,7 +110,7 @@ impl<'a> Library<'a> {
         }
         let index = match self.fetch_from(files, file, place, "texture")? {
             Some(bytes) => {
-                let texture = crate::io::image::decode_texture(&bytes, file, &self.options.limits)?;
+                let texture = image::decode_texture(&bytes, file, &self.texture_limits())?;
                 self.textures.push(texture);
                 Some(self.textures.len() as u32 - 1)
             }
@@ -111,18 +120,25 @@ impl<'a> Library<'a> {
         Ok(index)
     }
 
+    /// The limits less what the textures so far hold.
+    fn texture_limits(&self) -> Limits {
+        let limits = self.options.limits;
+        let held = self.textures.iter().map(|t| 4 * t.texels.len() as u64).sum();
+        Limits { max_bytes: limits.max_bytes.saturating_sub(held), ..limits }
+    }
+
     /// The index of a material by name; an unknown one gets the default and a notice, or an error when strict.
     pub fn index_of(&mut self, label: Token<'_>, obj: &str) -> Result<u32> {
         let name = String::from_utf8_lossy(label.bytes);
         if let Some(&index) = self.by_name.get(&*name) {
             return Ok(index);
         }
-        let hint = text::did_you_mean(&label.shown(), self.by_name.keys().map(String::as_str));
-        let what = format!("no material library defines '{}'{hint}", label.shown());
-        if self.options.strict {
-            return Err(label.error(obj, what));
-        }
-        if self.notices.len() < super::MAX_NOTICES {
+        if self.options.strict || self.notices.len() < super::MAX_NOTICES {
+            let hint = text::did_you_mean(&label.shown(), self.by_name.keys().map(String::as_str));
+            let what = format!("no material library defines '{}'{hint}", label.shown());
+            if self.options.strict {
+                return Err(label.error(obj, what));
+            }
             self.notices.push(format!("{}: {what}; grey is used", label.place(obj)));
         }
         let index = self.default_index();

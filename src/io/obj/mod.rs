@@ -4,6 +4,8 @@
 //! [`material`] gives the MTL keys a meaning. Each group of faces becomes a mesh.
 
 mod check;
+mod corner;
+mod left_out;
 mod library;
 mod material;
 mod mtl;
@@ -14,7 +16,7 @@ use library::Library;
 use twinlight_core::scene::{Mesh, Scene};
 use twinlight_core::{Error, Result};
 
-/// Notices of one kind beyond which more are only counted or dropped.
+/// Notices about single statements, at most: more would help nobody, and a file may ask for millions.
 const MAX_NOTICES: usize = 20;
 
 /// Reads an OBJ file; `name` is for messages, `files` gives the material libraries and textures.

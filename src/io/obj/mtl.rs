@@ -97,14 +97,16 @@ pub(super) fn parse(
         } else if WITHOUT_EFFECT.contains(&word) {
             unused.insert(word.to_owned());
         } else {
-            let known = USED.into_iter().chain(WITHOUT_EFFECT);
-            let what = format!("unknown key '{}'{}", key.shown(), text::did_you_mean(word, known));
+            let is_new = unused.insert(key.shown());
+            if !is_new || (notices.len() >= super::MAX_NOTICES && !options.strict) {
+                continue;
+            }
+            let hint = text::did_you_mean(word, USED.into_iter().chain(WITHOUT_EFFECT));
+            let what = format!("unknown key '{}'{hint}", key.shown());
             if options.strict {
                 return Err(key.error(name, what));
             }
-            if unused.insert(key.shown()) && notices.len() < super::MAX_NOTICES {
-                notices.push(format!("{}: {what} ignored", key.place(name)));
-            }
+            notices.push(format!("{}: {what} ignored", key.place(name)));
         }
     }
     let without_effect: Vec<&str> =

@@ -4,7 +4,7 @@ use crate::io::text::{self, Line, Token};
 use twinlight_core::{Error, Result};
 
 /// Longest header, bytes: none in use comes near, and a file without `end_header` is told apart early.
-const MAX_HEADER: usize = 1 << 20;
+const MAX_HEADER: usize = 1 << 16;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {

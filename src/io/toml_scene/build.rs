@@ -1,14 +1,14 @@
 //! From the tables of a scene file to one scene.
 
-use super::document::{CameraTable, Document, EnvironmentTable, InstanceTable, MeshTable};
+use super::document::{Document, InstanceTable, MeshTable};
+use super::held::Held;
 use super::source::Source;
-use super::{RenderSettings, light, material, place};
+use super::{RenderSettings, light, material, place, view};
 use crate::io::resolve::{Files, refused};
 use crate::io::{LoadOptions, builtin, image, load, text};
-use glam::DMat3;
 use std::collections::BTreeMap;
 use toml::Spanned;
-use twinlight_core::scene::{Camera, Environment, Instance, Light, Scene, Transform};
+use twinlight_core::scene::{Camera, Instance, Light, Scene, Transform};
 use twinlight_core::{Error, Result};
 
 /// Scene files inside scene files, at most.
@@ -20,23 +20,16 @@ const MAX_MESH_FILES: u32 = 4096;
 const MAX_INSTANCES: usize = 1 << 20;
 
 /// The scene files that are being read.
-pub(super) struct Nesting<'a> {
-    options: &'a LoadOptions,
+#[derive(Default)]
+pub(super) struct Nesting {
     /// Identities of the open scene files, outermost first.
     open: Vec<String>,
     /// Mesh files read so far.
     mesh_files: u32,
 }
 
-impl<'a> Nesting<'a> {
-    pub fn new(options: &'a LoadOptions) -> Self {
-        Self { options, open: Vec::new(), mesh_files: 0 }
-    }
-}
-
 /// What a mesh file contributes wherever it is placed. Indices are those of the whole scene.
 struct Part {
-    name: String,
     instances: Vec<Instance>,
     lights: Vec<Light>,
     camera: Option<Camera>,
@@ -48,7 +41,8 @@ pub(super) fn scene(
     bytes: &[u8],
     name: &str,
     files: &dyn Files,
-    nesting: &mut Nesting<'_>,
+    options: &LoadOptions,
+    nesting: &mut Nesting,
 ) -> Result<(Scene, RenderSettings)> {
     let source = Source::new(bytes, name)?;
     let document = source.document()?;
@@ -56,11 +50,13 @@ pub(super) fn scene(
     let mut builder = Builder {
         source,
         files,
-        options: nesting.options,
+        options,
         scene: Scene::default(),
         materials: BTreeMap::new(),
         textures: BTreeMap::new(),
         parts: Vec::new(),
+        part_by_name: BTreeMap::new(),
+        held: Held::default(),
     };
     builder.fill(&document, nesting)?;
     nesting.open.pop();
@@ -83,10 +79,13 @@ struct Builder<'a> {
     materials: BTreeMap<String, u32>,
     textures: BTreeMap<String, u32>,
     parts: Vec<Part>,
+    part_by_name: BTreeMap<String, usize>,
+    /// Triangles and bytes of the scene's meshes and textures so far.
+    held: Held,
 }
 
 impl Builder<'_> {
-    fn fill(&mut self, document: &Document, nesting: &mut Nesting<'_>) -> Result<()> {
+    fn fill(&mut self, document: &Document, nesting: &mut Nesting) -> Result<()> {
         for table in &document.material {
             self.material(table)?;
         }
@@ -105,10 +104,13 @@ impl Builder<'_> {
             self.scene.lights.push(light::light(table, &self.source)?);
         }
         if let Some(table) = &document.camera {
-            self.scene.camera = Some(self.camera(table)?);
+            self.scene.camera = Some(view::camera(table, &self.source)?);
         }
         if let Some(table) = &document.environment {
-            self.scene.environment = Some(self.environment(table)?);
+            self.scene.environment = Some({
+                let limits = self.remaining().limits;
+                view::environment(table, &self.source, &limits, |file| self.read(file, "environment"))?
+            });
         }
         Ok(())
     }
@@ -133,7 +135,9 @@ impl Builder<'_> {
             return Ok(known);
         }
         let bytes = self.read(file, "texture")?;
-        self.scene.textures.push(image::decode_texture(&bytes, file.get_ref(), &self.options.limits)?);
+        let texture = image::decode_texture(&bytes, file.get_ref(), &self.remaining().limits)?;
+        self.held.bytes += 4 * texture.texels.len() as u64;
+        self.scene.textures.push(texture);
         let index = self.scene.textures.len() as u32 - 1;
         self.textures.insert(file.get_ref().clone(), index);
         Ok(index)
@@ -144,9 +148,9 @@ impl Builder<'_> {
         self.files.read_path(file.get_ref()).map_err(|e| refused(e, &place(), what, file.get_ref()))
     }
 
-    fn mesh(&mut self, table: &MeshTable, nesting: &mut Nesting<'_>) -> Result<()> {
+    fn mesh(&mut self, table: &MeshTable, nesting: &mut Nesting) -> Result<()> {
         let name = table.name.as_ref().unwrap_or(&table.path);
-        if self.parts.iter().any(|p| p.name == *name.get_ref()) {
+        if self.part_by_name.contains_key(name.get_ref()) {
             let what = format!("mesh '{}' is there twice; give each a name of its own", shown(name));
             return Err(self.source.error(&name.span(), what));
         }
@@ -158,11 +162,12 @@ impl Builder<'_> {
         let own = self.load(&table.path, nesting)?;
         let material = table.material.as_ref().map(|m| self.material_index(m)).transpose()?;
         let part = self.absorb(own, name.get_ref(), material)?;
+        self.part_by_name.insert(name.get_ref().clone(), self.parts.len());
         self.parts.push(part);
         Ok(())
     }
 
-    fn load(&self, path: &Spanned<String>, nesting: &mut Nesting<'_>) -> Result<Scene> {
+    fn load(&self, path: &Spanned<String>, nesting: &mut Nesting) -> Result<Scene> {
         let (text, place) = (path.get_ref(), self.source.place(&path.span()));
         if let Some(name) = text.strip_prefix(builtin::PREFIX) {
             return builtin::load(name).map_err(|e| refused(e, &place, "mesh", text));
@@ -174,12 +179,20 @@ impl Builder<'_> {
         let files = self.files.beside(text).map_err(refuse)?;
         let load::Reader::Scene(parse) = reader else {
             self.check_nesting(text, &place, nesting)?;
-            return scene(&bytes, name, files.as_ref(), nesting).map(|(scene, _)| scene);
+            return scene(&bytes, name, files.as_ref(), &self.remaining(), nesting).map(|(scene, _)| scene);
         };
-        parse(&bytes, name, files.as_ref(), self.options)
+        parse(&bytes, name, files.as_ref(), &self.remaining())
     }
 
-    fn check_nesting(&self, path: &str, place: &str, nesting: &Nesting<'_>) -> Result<()> {
+    /// The options less what the scene holds already.
+    fn remaining(&self) -> LoadOptions {
+        let mut options = self.options.clone();
+        options.limits.max_triangles = options.limits.max_triangles.saturating_sub(self.held.triangles);
+        options.limits.max_bytes = options.limits.max_bytes.saturating_sub(self.held.bytes);
+        options
+    }
+
+    fn check_nesting(&self, path: &str, place: &str, nesting: &Nesting) -> Result<()> {
         let identity = self.files.identity(path)?;
         if nesting.open.contains(&identity) {
             return Err(Error::invalid(place, format!("'{path}' includes itself")));
@@ -200,6 +213,13 @@ impl Builder<'_> {
         let [meshes, materials, textures] =
             [self.scene.meshes.len(), self.scene.materials.len(), self.scene.textures.len()]
                 .map(|n| n as u32);
+        self.held.add(&own);
+        let limits = &self.options.limits;
+        // Builtin scenes know no limits.
+        if self.held.triangles > limits.max_triangles {
+            let what = "triangles of the scene's meshes";
+            return Err(Error::limit(what, self.held.triangles, limits.max_triangles));
+        }
         for mut mesh in own.meshes {
             mesh.material_ids.iter_mut().for_each(|id| *id += materials);
             self.scene.meshes.push(mesh);
@@ -215,23 +235,18 @@ impl Builder<'_> {
                 .notices
                 .push(format!("the environment of '{name}' is left out: only a scene's own counts"));
         }
-        let stored = self.scene.meshes.iter().map(|m| m.triangles.len() as u64).sum();
-        let limit = self.options.limits.max_triangles;
-        if stored > limit {
-            return Err(Error::limit("triangles of the scene's meshes", stored, limit));
-        }
         let adopt = |i: Instance| Instance {
             mesh: i.mesh + meshes,
             material: material.or(i.material.map(|m| m + materials)),
             ..i
         };
         let instances = own.instances.into_iter().map(adopt).collect();
-        Ok(Part { name: name.into(), instances, lights: own.lights, camera: own.camera, placed: false })
+        Ok(Part { instances, lights: own.lights, camera: own.camera, placed: false })
     }
 
     fn instance(&mut self, table: &InstanceTable) -> Result<()> {
-        let Some(part) = self.parts.iter().position(|p| p.name == *table.mesh.get_ref()) else {
-            let names = self.parts.iter().map(|p| p.name.as_str());
+        let Some(&part) = self.part_by_name.get(table.mesh.get_ref()) else {
+            let names = self.part_by_name.keys().map(String::as_str);
             let hint = text::did_you_mean(table.mesh.get_ref(), names);
             let what = format!("no mesh is called '{}'{hint}", shown(&table.mesh));
             return Err(self.source.error(&table.mesh.span(), what));
@@ -275,37 +290,6 @@ impl Builder<'_> {
             let hint = text::did_you_mean(name.get_ref(), self.materials.keys().map(String::as_str));
             self.source.error(&name.span(), format!("no [[material]] is called '{}'{hint}", shown(name)))
         })
-    }
-
-    fn camera(&self, table: &Spanned<CameraTable>) -> Result<Camera> {
-        let CameraTable { position, target, up, vfov } = *table.get_ref();
-        let camera = Camera { position, target, up, vfov_degrees: vfov };
-        match camera.record(1, 1, [0.0; 3]) {
-            Ok(_) => Ok(camera),
-            Err(Error::InvalidInput { what, .. }) => Err(self.source.error(&table.span(), what)),
-            Err(other) => Err(other),
-        }
-    }
-
-    fn environment(&self, table: &Spanned<EnvironmentTable>) -> Result<Environment> {
-        let t = table.get_ref();
-        let mut environment = match (&t.file, t.radiance) {
-            (Some(file), None) => {
-                let bytes = self.read(file, "environment")?;
-                image::read_exr_environment(&bytes, file.get_ref(), &self.options.limits)?
-            }
-            (None, Some(radiance)) => Environment::constant(radiance.narrow()),
-            _ => {
-                return Err(self
-                    .source
-                    .error(&table.span(), "an environment needs either 'file' or 'radiance'"));
-            }
-        };
-        environment.scale = t.scale.unwrap_or(1.0);
-        environment.rotation = DMat3::from_rotation_y(t.rotation.unwrap_or(0.0).to_radians());
-        self.source
-            .check(&table.span(), Scene { environment: Some(environment.clone()), ..Scene::default() })?;
-        Ok(environment)
     }
 }
 

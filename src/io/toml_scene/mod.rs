@@ -30,11 +30,13 @@
 
 mod build;
 mod document;
+mod held;
 mod light;
 mod material;
 mod place;
 mod source;
 mod value;
+mod view;
 
 use super::LoadOptions;
 use super::resolve::Files;
@@ -75,7 +77,7 @@ pub fn parse_with_settings(
     files: &dyn Files,
     options: &LoadOptions,
 ) -> Result<(Scene, RenderSettings)> {
-    build::scene(bytes, name, files, &mut build::Nesting::new(options))
+    build::scene(bytes, name, files, options, &mut build::Nesting::default())
 }
 
 /// The JSON Schema of scene files.
