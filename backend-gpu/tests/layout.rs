@@ -210,6 +210,7 @@ fn with_intersection(mut constants: Constants) -> Constants {
 fn with_lights(mut constants: Constants) -> Constants {
     constants.extend([
         ("POSITION_ERROR", offset::POSITION_ERROR.into()),
+        ("PLANE_ERROR", offset::PLANE_ERROR.into()),
         ("FAR", light::FAR.into()),
         ("SHADOW_REACH", light::SHADOW_REACH.into()),
         ("PI", transport::PI.into()),

@@ -102,7 +102,7 @@ fn sample_triangle(index: u32, receiver: vec3<f32>, u: f32, v: f32) -> LightSamp
     let b = p1 * b0;
     let c = p2 * b1;
     let point = (a + b) + c;
-    let error = ((abs(a) + abs(b)) + abs(c)) * POSITION_ERROR;
+    let error = triangle_error(p0, p1, p2, a, b, c);
     let to_light = point - receiver;
     let squared = dot_product(to_light, to_light);
     let direction = normalized(to_light);

@@ -41,7 +41,7 @@ fn surface_at(slot: u32, u: f32, v: f32, direction: vec3<f32>) -> Surface {
     let b = p1 * u;
     let c = p2 * v;
     let position = (a + b) + c;
-    let error = ((abs(a) + abs(b)) + abs(c)) * POSITION_ERROR;
+    let error = triangle_error(p0, p1, p2, a, b, c);
     let winding = normalized_any(cross_product(p1 - p0, p2 - p0));
     let front = dot_product(winding, direction) < 0.0f;
     let geometric_normal = select(-winding, winding, front);

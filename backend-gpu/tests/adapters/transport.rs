@@ -27,9 +27,11 @@ const SCENES: [&str; 7] = ["cornell", "materials", "lights", "veach", "axis", "t
 const WIDTH: u32 = 24;
 const HEIGHT: u32 = 16;
 
-/// Portable mode may round otherwise; then this share of the elements may differ. Statistics are conformance's job, this
-/// only tells a broken kernel from a rounding one: on software adapters 0.5 of the pixels of a path-traced film differ.
+/// Share of the elements that must agree in portable mode. Statistics are conformance's job, this only tells a broken
+/// kernel from a rounding one: on llvmpipe 44 % of the texels of the worst film were seen to differ, no hit and no
+/// G-buffer texel.
 const PORTABLE_HITS: f64 = 0.9;
+const PORTABLE_FILMS: f64 = 0.4;
 
 struct Pair {
     name: &'static str,
@@ -109,7 +111,7 @@ fn gbuffers(target: &Target) -> Result<(), Failed> {
             ShadePrimaryParams { camera: pair.camera()?, width: WIDTH, height: HEIGHT, padding: [0; 2] };
         let want = shade(&CpuBackend::new(), &pair.compiled, &params)?;
         let got = shade(&gpu, &pair.compiled, &params)?;
-        expect_twins(target, &format!("{name} G-buffer"), &got, &want, 0.0)?;
+        expect_twins(target, &format!("{name} G-buffer"), &got, &want, PORTABLE_HITS)?;
     }
     Ok(())
 }
@@ -160,7 +162,8 @@ fn compare_films(target: &Target, pair: &Pair, params: &TracePathsParams) -> Res
     {
         return Err(format!("{}: samples missing, rejected or astray", pair.name).into());
     }
-    expect_twins(target, &format!("{} film, {} bounces", pair.name, params.max_bounces), &got, &want, 0.0)
+    let what = format!("{} film, {} bounces", pair.name, params.max_bounces);
+    expect_twins(target, &what, &got, &want, PORTABLE_FILMS)
 }
 
 fn film<B: Backend>(
