@@ -6,10 +6,11 @@
 
 use std::path::Path;
 use std::time::Instant;
-use twinlight::io::{LoadOptions, load};
+use twinlight::io::resolve::Resolver;
+use twinlight::io::{LoadOptions, load, toml_scene};
 use twinlight_core::scene::Scene;
 
-/// File, triangles, materials the file uses (the default one included), emissive triangles.
+/// File and triangles.
 const SCENES: [(&str, usize); 16] = [
     ("cornell-box-measured/cornell-measured.obj", 32),
     ("cornell-box-original/CornellBox-Original.obj", 36),
@@ -54,4 +55,32 @@ fn public_scenes_have_their_triangle_counts() {
         assert_eq!(scene.triangle_count(), *triangles, "{file}");
         scene.validate(&options.limits).unwrap_or_else(|e| panic!("{file}: {e}"));
     }
+}
+
+#[test]
+fn scene_files_for_public_models_have_cameras_and_light() {
+    let Some(folder) = std::env::var_os("TWINLIGHT_SCENES") else {
+        println!("SKIPPED: TWINLIGHT_SCENES does not name the folder of the public scenes");
+        return;
+    };
+    let options = LoadOptions::default();
+    let files = Path::new(env!("CARGO_MANIFEST_DIR")).join("benchmarks/scenes");
+    let mut count = 0;
+    for entry in std::fs::read_dir(files).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|e| e != "toml") {
+            continue;
+        }
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        // The files name their models as if they stood in the models' folder.
+        let beside = Resolver::new(&Path::new(&folder).join(&name), &options).unwrap();
+        let (scene, settings) =
+            toml_scene::parse_with_settings(&std::fs::read(&path).unwrap(), &name, &beside, &options)
+                .unwrap_or_else(|e| panic!("{e}"));
+        assert!(scene.camera.is_some() && scene.has_light() && settings.size.is_some(), "{name}");
+        scene.validate(&options.limits).unwrap_or_else(|e| panic!("{name}: {e}"));
+        println!("{name}: {} triangles", scene.triangle_count());
+        count += 1;
+    }
+    assert!(count >= 10, "{count} scene files");
 }
