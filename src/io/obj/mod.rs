@@ -1,13 +1,13 @@
 //! Wavefront OBJ with MTL materials.
 //!
-//! Three steps: [`check`] validates the text and passes on a plain form of it, `tobj` turns that into triangles, and
+//! Three steps: `check` validates the text and passes on a plain form of it, `tobj` turns that into triangles, and
 //! [`material`] gives the MTL keys a meaning. Each group of faces becomes a mesh.
 
 mod check;
 mod corner;
 mod left_out;
 mod library;
-mod material;
+pub mod material;
 mod mtl;
 
 use super::LoadOptions;
