@@ -70,8 +70,10 @@ impl<'a> Stack<'a> {
 /// The best hit so far.
 struct Best {
     t: f32,
-    u: f32,
+    /// Edge functions over `determinant` are the weights: divided once per ray, not once per improvement.
     v: f32,
+    w: f32,
+    determinant: f32,
     /// pack · PACK + lane.
     lane: u32,
 }
@@ -119,7 +121,7 @@ impl WideBvh {
         let frame = ray_frame(origin, direction);
         let node_ray = NodeRay::new(width, origin, frame.inverse);
         let pack_ray = PackRay::new(width, &frame, t_min);
-        let mut best = Best { t: t_max, u: 0.0, v: 0.0, lane: NO_SLOT };
+        let mut best = Best { t: t_max, v: 0.0, w: 0.0, determinant: 1.0, lane: NO_SLOT };
         let mut entries: Entries = [MaybeUninit::uninit(); MAX_STACK];
         let mut stack = Stack::new(&mut entries);
         let mut current = 0_u32;
@@ -204,7 +206,7 @@ impl WideBvh {
             let t = ts[i];
             let tie = t == best.t && (best.lane == NO_SLOT || self.id(lane) < self.id(best.lane));
             if t < best.t || tie {
-                *best = Best { t, u: vs[i] / determinants[i], v: ws[i] / determinants[i], lane };
+                *best = Best { t, v: vs[i], w: ws[i], determinant: determinants[i], lane };
             }
         }
     }
@@ -217,7 +219,7 @@ impl WideBvh {
     #[inline(always)]
     fn slot_hit(&self, best: &Best) -> SlotHit {
         let slot = self.slots.get(best.lane as usize).copied().unwrap_or(NO_SLOT);
-        SlotHit { t: best.t, u: best.u, v: best.v, slot }
+        SlotHit { t: best.t, u: best.v / best.determinant, v: best.w / best.determinant, slot }
     }
 
     /// What finding the closest hit of one ray takes.

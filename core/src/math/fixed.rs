@@ -6,44 +6,23 @@ pub type Words = [u32; 2];
 /// What [`from_float`] returns for a value that is negative, not finite or at least 2⁶² quanta.
 pub const OUT_OF_RANGE: Words = [u32::MAX, u32::MAX];
 
-/// ⌊x·2^exponent + ½⌋ for x ≥ 0, computed on the bits of x, so that no float rounding intervenes.
+/// ⌊x·2^exponent + ½⌋ for x ≥ 0 and −900 ≤ exponent ≤ 900. Subnormals count as 0: adapters flush them.
+///
+/// WGSL has no f64 and shifts the bits of x instead. Here f64 gives the same: the product is exact, and the sum is
+/// rounded only where x·2^exponent is below 2⁻²⁹, which the floor takes to 0 either way.
 #[inline(always)]
 pub fn from_float(x: f32, exponent: i32) -> Words {
-    let bits = x.to_bits();
-    let biased = bits >> 23;
-    // Subnormals count as 0: adapters flush them.
-    if biased == 0 || bits == 0x8000_0000 {
-        return [0, 0];
-    }
-    // Sign bit set, infinity or NaN.
-    if biased >= 255 {
+    let scale = f64::from_bits(((1023 + exponent) as u64) << 52);
+    let scaled = f64::from(x) * scale;
+    // Written so that NaN is out of range.
+    if !(scaled >= 0.0 && scaled < 4_611_686_018_427_387_904.0) {
         return OUT_OF_RANGE;
     }
-    let mantissa = (bits & 0x007f_ffff) | 0x0080_0000;
-    let shift = biased as i32 - 150 + exponent;
-    if shift > 38 {
-        return OUT_OF_RANGE;
-    }
-    if shift >= 0 {
-        return shift_left(mantissa, shift as u32);
-    }
-    let down = (-shift) as u32;
-    if down > 24 {
+    if x < f32::MIN_POSITIVE {
         return [0, 0];
     }
-    [((mantissa >> (down - 1)) + 1) >> 1, 0]
-}
-
-/// `value · 2^shift` for shift in 0..=38 and value below 2²⁴.
-#[inline(always)]
-fn shift_left(value: u32, shift: u32) -> Words {
-    if shift >= 32 {
-        return [0, value << (shift - 32)];
-    }
-    if shift == 0 {
-        return [value, 0];
-    }
-    [value << shift, value >> (32 - shift)]
+    let value = (scaled + 0.5) as u64;
+    [value as u32, (value >> 32) as u32]
 }
 
 /// Sum, saturating at 2⁶⁴ − 1. Saturating sums of non-negative numbers don't depend on the order either.
@@ -71,7 +50,39 @@ mod tests {
         u64::from(w[1]) << 32 | u64::from(w[0])
     }
 
+    /// The conversion as WGSL makes it, by shifting the bits of x.
+    fn by_shifting(x: f32, exponent: i32) -> Words {
+        let bits = x.to_bits();
+        let biased = bits >> 23;
+        if biased == 0 || bits == 0x8000_0000 {
+            return [0, 0];
+        }
+        if biased >= 255 {
+            return OUT_OF_RANGE;
+        }
+        let mantissa = u64::from((bits & 0x007f_ffff) | 0x0080_0000);
+        let shift = biased as i32 - 150 + exponent;
+        let value = match shift {
+            39.. => return OUT_OF_RANGE,
+            0..39 => mantissa << shift,
+            -24..0 => ((mantissa >> (-shift - 1)) + 1) >> 1,
+            _ => 0,
+        };
+        [value as u32, (value >> 32) as u32]
+    }
+
     proptest! {
+        #[test]
+        fn conversion_is_the_shift(bits in 0_u32..0x8000_0000, exponent in -60_i32..80) {
+            let x = f32::from_bits(bits);
+            prop_assert_eq!(from_float(x, exponent), by_shifting(x, exponent));
+        }
+
+        #[test]
+        fn ordinary_values_too(x in 1e-9_f32..1e9, exponent in -20_i32..60) {
+            prop_assert_eq!(from_float(x, exponent), by_shifting(x, exponent));
+        }
+
         #[test]
         fn conversion_rounds_half_up(x in 1e-6_f32..1e6, exponent in -20_i32..40) {
             let exact = f64::from(x) * f64::from(exponent).exp2();
