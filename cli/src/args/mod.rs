@@ -1,0 +1,43 @@
+//! The command line.
+
+mod render;
+mod values;
+
+pub use render::{LoadArgs, ModeName, ProgressMode, RenderArgs};
+pub use values::{BackendChoice, Bounces, Size};
+
+use crate::exit;
+use clap::{Parser, Subcommand};
+
+/// Global illumination on a CPU or a GPU, with the same bits on both.
+#[derive(Debug, Parser)]
+#[command(
+    name = "twinlight",
+    version,
+    propagate_version = true,
+    infer_subcommands = false,
+    max_term_width = 100,
+    after_help = "Start with:  twinlight render builtin:cornell\nThen:        twinlight scene list    \
+                  twinlight help render",
+    after_long_help = exit::TABLE
+)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to PNG and EXR
+    Render(Box<RenderArgs>),
+    /// Print a completion script for a shell
+    #[command(
+        after_help = "Example:\n  twinlight completions bash > ~/.local/share/bash-completion/completions/twinlight"
+    )]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+}

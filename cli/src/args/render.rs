@@ -1,0 +1,211 @@
+//! `render`.
+
+use super::values::{BackendChoice, Bounces, Bytes, CameraArg, Size, seconds};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+use twinlight::io::LoadOptions;
+use twinlight::methods::post::tonemap::Operator;
+use twinlight::methods::reference::Sampler;
+use twinlight::scene::Limits;
+
+const EXAMPLES: &str = "\
+Examples:
+  twinlight render builtin:cornell
+      64 samples per pixel; writes cornell.png, cornell.exr and cornell.json to the current folder
+  twinlight render room.toml -o out/room.exr --spp 1024 --bounces 8
+      a scene file's own settings count until a flag says otherwise
+  twinlight render bunny.ply --time 10 --size 800x600 --camera \"0,0.1,0.4 0,0.1,0 35\"
+      as many samples as fit into ten seconds
+  twinlight render builtin:cornell --backend gpu:llvmpipe --mode strict
+      on a GPU adapter, bit for bit what the CPU renders
+
+Ctrl-C ends the render and saves what is finished (exit code 130); twice: at once, nothing is saved.";
+
+/// Where a scene comes from and what it may need.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Reading the scene")]
+pub struct LoadArgs {
+    /// Let the scene's files lie in this folder too, beside the scene's own
+    #[arg(long, value_name = "DIR", env = "TWINLIGHT_ALLOW_PATH")]
+    pub allow_path: Vec<PathBuf>,
+    /// Refuse what would need more memory than this, such as 4GiB
+    #[arg(long, value_name = "BYTES", env = "TWINLIGHT_MAX_MEMORY", default_value = "16GiB")]
+    pub max_memory: Bytes,
+    /// Drop triangles with vertices that are no numbers, instead of refusing the scene
+    #[arg(long)]
+    pub lenient: bool,
+    /// Refuse what else is a notice: unknown keys, missing textures
+    #[arg(long)]
+    pub strict: bool,
+}
+
+impl LoadArgs {
+    /// As the readers take them.
+    pub fn options(&self) -> LoadOptions {
+        LoadOptions {
+            limits: self.limits(),
+            allow_paths: self.allow_path.clone(),
+            strict: self.strict,
+            ..LoadOptions::default()
+        }
+    }
+
+    /// As [`twinlight::scene::compile`] takes them.
+    pub fn limits(&self) -> Limits {
+        Limits { max_bytes: self.max_memory.0, lenient: self.lenient, ..Limits::default() }
+    }
+}
+
+/// How radiance becomes a PNG.
+#[derive(Debug, Args)]
+pub struct ToneArgs {
+    /// Stops of exposure of PNGs and display metrics; EXR files hold radiance as it is
+    #[arg(
+        long,
+        value_name = "STOPS",
+        env = "TWINLIGHT_EXPOSURE",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    pub exposure: f64,
+    /// Tone curve of PNGs and display metrics: none clamps
+    #[arg(long, value_name = "CURVE", env = "TWINLIGHT_TONEMAP", default_value = "none", value_parser = tone_operator)]
+    pub tonemap: Operator,
+}
+
+fn tone_operator(text: &str) -> Result<Operator, String> {
+    text.parse().map_err(|e: twinlight::methods::post::PostError| e.to_string())
+}
+
+/// How float arithmetic is compiled on a GPU.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ModeName {
+    /// Every operation rounds as written: the CPU's bits
+    Strict,
+    /// Plain WGSL: the driver may fuse and reorder
+    Portable,
+}
+
+/// Where random numbers come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SamplerName {
+    /// Owen-scrambled Sobol points: less noise
+    Sobol,
+    /// Independent numbers: a variance that can be tested
+    Independent,
+}
+
+impl From<SamplerName> for Sampler {
+    fn from(name: SamplerName) -> Self {
+        match name {
+            SamplerName::Sobol => Self::Sobol,
+            SamplerName::Independent => Self::Independent,
+        }
+    }
+}
+
+/// The rendering methods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// Unbiased path tracer, what the others are judged by
+    Reference,
+}
+
+/// How progress is shown on stderr.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ProgressMode {
+    /// A bar on a terminal, else nothing
+    Auto,
+    /// A line every second
+    Plain,
+    /// A line of JSON for every pass
+    Json,
+    /// Nothing
+    Never,
+}
+
+/// Renders a scene by path tracing and writes pictures: PNG to look at, EXR with layers to measure, and a JSON file
+/// that says how they were made.
+#[derive(Debug, Args)]
+#[command(after_long_help = EXAMPLES, after_help = "`--help` shows examples and explains more.")]
+pub struct RenderArgs {
+    /// A scene file (.toml .obj .ply .gltf .glb) or builtin:NAME
+    #[arg(value_name = "SCENE")]
+    pub scene: String,
+    /// Write here; .png or .exr, as often as you like [default: SCENE.png and SCENE.exr in the current folder]
+    ///
+    /// Folders are created. PNG is exposed and tone-mapped. EXR holds radiance and the layers direct, indirect, albedo,
+    /// N (normals), Z (depth), id and variance. A JSON file with settings, timings and memory lies beside the first.
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub outputs: Vec<PathBuf>,
+
+    /// Rendering method
+    #[arg(long, value_name = "NAME", env = "TWINLIGHT_METHOD", help_heading = "Quality")]
+    pub method: Option<MethodName>,
+    /// Width and height, pixels [default: the scene's, else 512x512]
+    #[arg(long, value_name = "WxH", env = "TWINLIGHT_SIZE", help_heading = "Quality")]
+    pub size: Option<Size>,
+    /// Samples per pixel [default: the scene's, else 64; unlimited with --time]
+    #[arg(long, value_name = "N", env = "TWINLIGHT_SPP", help_heading = "Quality",
+          value_parser = clap::value_parser!(u32).range(1..=16_777_216))]
+    pub spp: Option<u32>,
+    /// Stop after this many seconds, but not before every pixel has a sample
+    ///
+    /// With --spp, whichever comes first. The number of samples then depends on the machine, and the picture with it.
+    #[arg(long, value_name = "SECONDS", env = "TWINLIGHT_TIME", help_heading = "Quality", value_parser = seconds)]
+    pub time: Option<f64>,
+    /// Times light may scatter: 0 shows emitters alone, 1 direct light, `unlimited` everything [default: the scene's, else
+    /// unlimited]
+    #[arg(long, value_name = "N", env = "TWINLIGHT_BOUNCES", help_heading = "Quality")]
+    pub bounces: Option<Bounces>,
+    /// Seed of the random numbers: same seed, same picture
+    #[arg(long, value_name = "N", env = "TWINLIGHT_SEED", help_heading = "Quality")]
+    pub seed: Option<u32>,
+    /// Where random numbers come from
+    #[arg(
+        long,
+        value_name = "NAME",
+        env = "TWINLIGHT_SAMPLER",
+        default_value = "sobol",
+        help_heading = "Quality"
+    )]
+    pub sampler: SamplerName,
+
+    /// Camera as "px,py,pz tx,ty,tz [ux,uy,uz] vfov": position, target, up (+Y), vertical field of view in degrees
+    #[arg(long, value_name = "CAMERA", allow_hyphen_values = true, help_heading = "Picture")]
+    pub camera: Option<CameraArg>,
+    #[command(flatten, next_help_heading = "Picture")]
+    pub tone: ToneArgs,
+
+    /// Where kernels run: auto, cpu, gpu, or gpu:SELECTOR (see `twinlight devices`)
+    ///
+    /// auto takes a hardware GPU if there is one, else the CPU; software adapters (lavapipe, SwiftShader) only run when
+    /// asked for by gpu or gpu:SELECTOR. SELECTOR is a number or part of a name.
+    #[arg(
+        long,
+        value_name = "BACKEND",
+        env = "TWINLIGHT_BACKEND",
+        default_value = "auto",
+        help_heading = "Device"
+    )]
+    pub backend: BackendChoice,
+    /// Float arithmetic of a GPU: strict gives the CPU's bits [default: strict where the adapter can]
+    #[arg(long, value_name = "MODE", env = "TWINLIGHT_MODE", help_heading = "Device")]
+    pub mode: Option<ModeName>,
+    /// Threads of the CPU backend; the picture is the same for any number [default: one per core]
+    #[arg(long, value_name = "N", env = "TWINLIGHT_THREADS", help_heading = "Device",
+          value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// How progress is shown, on stderr
+    #[arg(
+        long,
+        value_name = "HOW",
+        env = "TWINLIGHT_PROGRESS",
+        default_value = "auto",
+        help_heading = "Device"
+    )]
+    pub progress: ProgressMode,
+
+    #[command(flatten)]
+    pub load: LoadArgs,
+}

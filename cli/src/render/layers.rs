@@ -1,0 +1,58 @@
+//! Pictures from a film and a G-buffer.
+
+use crate::exit::Failure;
+use twinlight::io::image::LayeredImage;
+use twinlight::kernels::shade_primary::GBufferTexel;
+use twinlight::methods::post::image::Image;
+use twinlight::methods::post::tonemap::Display;
+use twinlight::methods::reference::Film;
+
+/// What files are made from.
+pub struct Pictures<'a> {
+    film: &'a Film,
+    gbuffer: Option<&'a [GBufferTexel]>,
+    beauty: Image,
+    display: Display,
+}
+
+impl<'a> Pictures<'a> {
+    /// Pictures of a film; `gbuffer` has a texel per pixel.
+    ///
+    /// # Errors
+    /// When the film has no pixels.
+    pub fn new(
+        film: &'a Film,
+        gbuffer: Option<&'a [GBufferTexel]>,
+        display: Display,
+    ) -> Result<Self, Failure> {
+        let beauty = Image::new(film.width(), film.height(), film.radiance()).map_err(Failure::Pictures)?;
+        Ok(Self { film, gbuffer, beauty, display })
+    }
+
+    /// Pixels per row, rows.
+    pub fn size(&self) -> (u32, u32) {
+        (self.film.width(), self.film.height())
+    }
+
+    /// What a screen shows.
+    pub fn srgb8(&self) -> Vec<[u8; 3]> {
+        self.display.to_srgb8(&self.beauty)
+    }
+
+    /// Radiance and everything that was measured beside it.
+    pub fn layered(&self) -> LayeredImage {
+        let mut image = LayeredImage::new(self.film.width(), self.film.height());
+        image.add_rgb("", self.beauty.pixels());
+        image.add_rgb("direct", &self.film.direct());
+        image.add_rgb("indirect", &self.film.indirect());
+        image.add_f32("variance.Y", self.film.variance());
+        if let Some(gbuffer) = self.gbuffer {
+            let vectors = |pick: fn(&GBufferTexel) -> [f32; 3]| gbuffer.iter().map(pick).collect::<Vec<_>>();
+            image.add_rgb("albedo", &vectors(|t| t.albedo));
+            image.add_xyz("N", &vectors(|t| t.shading_normal));
+            image.add_f32("Z", gbuffer.iter().map(|t| t.depth).collect());
+            image.add_u32("id", gbuffer.iter().map(|t| t.triangle).collect());
+        }
+        image
+    }
+}

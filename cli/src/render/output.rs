@@ -1,0 +1,122 @@
+//! Where pictures go.
+
+use super::layers::Pictures;
+use crate::exit::{Failure, Stage};
+use std::path::{Path, PathBuf};
+use twinlight::Error;
+use twinlight::io::image::{exr, png};
+use twinlight::io::write_file;
+
+/// Formats of pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Png,
+    Exr,
+}
+
+/// The files of one render; at least one picture.
+#[derive(Debug)]
+pub struct Outputs {
+    pictures: Vec<(PathBuf, Format)>,
+    sidecar: PathBuf,
+}
+
+impl Outputs {
+    /// From the paths asked for, or `stem`.png and `stem`.exr in the current folder.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for other extensions and for one file asked for twice.
+    pub fn plan(paths: &[PathBuf], stem: &str) -> Result<Self, Failure> {
+        let defaults = [format!("{stem}.png").into(), format!("{stem}.exr").into()];
+        let paths = if paths.is_empty() { &defaults[..] } else { paths };
+        let mut pictures: Vec<(PathBuf, Format)> = Vec::new();
+        for path in paths {
+            if pictures.iter().any(|(other, _)| other == path) {
+                return Err(Failure::Usage(format!("'{}' is asked for twice", path.display())));
+            }
+            pictures.push((path.clone(), format_of(path)?));
+        }
+        let sidecar = pictures[0].0.with_extension("json");
+        Ok(Self { pictures, sidecar })
+    }
+
+    /// Makes the folders and sees whether files can be made in them: better now than after hours of rendering.
+    ///
+    /// # Errors
+    /// [`Error::Io`] naming the picture.
+    pub fn prepare_folders(&self) -> Result<(), Failure> {
+        for (path, _) in &self.pictures {
+            let io = |source| Failure::Library(Stage::Output, Error::Io { path: path.clone(), source });
+            let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            std::fs::create_dir_all(folder).map_err(io)?;
+            if path.is_dir() {
+                return Err(io(std::io::ErrorKind::IsADirectory.into()));
+            }
+            let probe = folder.join(format!(".twinlight-{}.probe", std::process::id()));
+            std::fs::File::create_new(&probe).map_err(io)?;
+            std::fs::remove_file(&probe).map_err(io)?;
+        }
+        Ok(())
+    }
+
+    /// Writes every picture; `attributes` go into the headers of EXR files.
+    ///
+    /// # Errors
+    /// [`Error::Io`] naming the picture.
+    pub fn write(&self, pictures: &Pictures, attributes: &[(&str, String)]) -> Result<(), Failure> {
+        let attributes: Vec<(&str, &str)> = attributes.iter().map(|(k, v)| (*k, v.as_str())).collect();
+        let (width, height) = pictures.size();
+        for (path, format) in &self.pictures {
+            let written = match format {
+                Format::Png => png::write(path, width, height, &pictures.srgb8()),
+                Format::Exr => exr::write(path, &pictures.layered(), &attributes),
+            };
+            written.map_err(Failure::at(Stage::Output))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the file that says how the pictures were made.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn write_sidecar(&self, text: &str) -> Result<(), Failure> {
+        write_file(&self.sidecar, text.as_bytes()).map_err(Failure::at(Stage::Output))
+    }
+
+    /// The pictures' paths.
+    pub fn pictures(&self) -> impl Iterator<Item = &Path> {
+        self.pictures.iter().map(|(path, _)| path.as_path())
+    }
+
+    /// Every file's path, one a line.
+    pub fn list(&self) -> String {
+        self.pictures().chain([self.sidecar.as_path()]).map(|path| format!("{}\n", path.display())).collect()
+    }
+}
+
+fn format_of(path: &Path) -> Result<Format, Failure> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match (extension.as_str(), path.file_name()) {
+        ("png", Some(_)) => Ok(Format::Png),
+        ("exr", Some(_)) => Ok(Format::Exr),
+        _ => Err(Failure::Usage(format!("'{}': pictures end in .png or .exr", path.display()))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_decide_formats_and_places() {
+        let outputs = Outputs::plan(&[], "room").unwrap();
+        assert_eq!(outputs.list(), "room.png\nroom.exr\nroom.json\n");
+        let outputs = Outputs::plan(&["a/b.EXR".into(), "c.png".into()], "room").unwrap();
+        assert_eq!(outputs.list(), "a/b.EXR\nc.png\na/b.json\n");
+        for bad in [&["a"][..], &["a.json"], &[".png"], &[""], &["a.png", "a.png"]] {
+            let paths: Vec<PathBuf> = bad.iter().map(PathBuf::from).collect();
+            assert!(matches!(Outputs::plan(&paths, "room"), Err(Failure::Usage(_))), "{bad:?}");
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! The render in batches of whole samples, whose films are added up on the host: what is finished survives a lost
+//! device. Sums are integers, so the batches don't show in the picture.
+
+use super::job::Job;
+use std::time::{Duration, Instant};
+use twinlight::methods::reference::{self, Control, Film, Progress, Settings, StopReason};
+use twinlight::scene::CompiledScene;
+use twinlight::{Backend, Error, Result};
+
+/// What a lost device may cost: batches grow until they take this long.
+const BATCH: Duration = Duration::from_secs(10);
+
+/// Why sampling ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stop {
+    /// Every sample was taken.
+    Samples,
+    /// The time limit came first.
+    Time,
+    /// A signal.
+    Signal(i32),
+    /// The device went away.
+    DeviceLost,
+}
+
+impl Stop {
+    /// For the sidecar and the EXR header.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Samples => "samples",
+            Self::Time => "time",
+            Self::Signal(_) => "interrupted",
+            Self::DeviceLost => "device lost",
+        }
+    }
+}
+
+/// What was sampled.
+pub struct Taken {
+    /// The sums.
+    pub film: Film,
+    /// Why it ended.
+    pub stop: Stop,
+    /// Since the start.
+    pub elapsed: Duration,
+    /// The error of a device that went away after the first batch.
+    pub lost: Option<Error>,
+}
+
+/// Samples the job. `interrupted` is asked, and `observe` told, after every pass.
+///
+/// # Errors
+/// Those of [`reference::render`]; a device lost in the first batch.
+pub fn take<B: Backend>(
+    backend: &B,
+    resident: &B::Scene,
+    scene: &CompiledScene,
+    job: &Job,
+    interrupted: impl Fn() -> Option<i32>,
+    mut observe: impl FnMut(Progress),
+) -> Result<Taken> {
+    let start = Instant::now();
+    let mut sum: Option<Film> = None;
+    let (mut taken, mut batch, mut fraction) = (0, 1, 0.0_f64);
+    let out_of_time = || job.time.is_some_and(|limit| start.elapsed() >= limit);
+    let (stop, lost) = loop {
+        let samples = batch.min(job.settings.samples - taken);
+        let part = Settings { first_sample: taken, samples, time: None, ..job.settings.clone() };
+        // A picture with holes is no picture: time counts once every pixel has a sample.
+        let may_time_out = sum.is_some();
+        let batch_start = Instant::now();
+        let rendered = reference::render(backend, resident, scene, &job.camera, &part, |progress| {
+            fraction = fraction.max(share(job, taken, &progress, start.elapsed()));
+            observe(Progress { fraction, samples: taken + progress.samples, elapsed: start.elapsed() });
+            let stop = interrupted().is_some() || (may_time_out && out_of_time());
+            if stop { Control::Stop } else { Control::Continue }
+        });
+        let rendered = match rendered {
+            Ok(rendered) => rendered,
+            Err(lost @ Error::DeviceLost { .. }) if sum.is_some() => break (Stop::DeviceLost, Some(lost)),
+            Err(error) => return Err(error),
+        };
+        match &mut sum {
+            Some(sum) => sum.merge(&rendered.film)?,
+            None => sum = Some(rendered.film),
+        }
+        taken += samples;
+        let signal = interrupted();
+        if rendered.stop == StopReason::Samples && taken == job.settings.samples {
+            break (Stop::Samples, None);
+        } else if let Some(signal) = signal {
+            break (Stop::Signal(signal), None);
+        } else if out_of_time() {
+            break (Stop::Time, None);
+        }
+        if batch_start.elapsed() * 2 <= BATCH {
+            batch = batch.saturating_mul(2);
+        }
+    };
+    let film = sum.ok_or_else(|| Error::Internal("no batch was rendered".into()))?;
+    Ok(Taken { film, stop, elapsed: start.elapsed(), lost })
+}
+
+/// How much is done: of the samples or of the time, whichever ends first.
+fn share(job: &Job, taken: u32, progress: &Progress, elapsed: Duration) -> f64 {
+    let samples = f64::from(taken) + progress.fraction * f64::from(job.settings.samples - taken).min(1.0);
+    let by_samples = samples / f64::from(job.settings.samples);
+    let by_time = job.time.map_or(0.0, |limit| elapsed.as_secs_f64() / limit.as_secs_f64());
+    by_samples.max(by_time).min(1.0)
+}

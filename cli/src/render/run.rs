@@ -1,0 +1,109 @@
+//! The part that needs a backend.
+
+use super::job::Job;
+use super::passes::{self, Stop, Taken};
+use super::progress::Display;
+use crate::args::RenderArgs;
+use crate::device::Device;
+use crate::exit::{Failure, Stage};
+use crate::interrupt::Interrupt;
+use crate::source::Prepared;
+use std::time::{Duration, Instant};
+use twinlight::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use twinlight::{Backend, BackendInfo, Error};
+
+/// What a backend made of a job.
+pub struct Done {
+    /// The samples.
+    pub taken: Taken,
+    /// What the camera sees, where the backend has the kernel.
+    pub gbuffer: Option<Vec<GBufferTexel>>,
+    /// What ran it.
+    pub info: BackendInfo,
+    /// Time to make the scene resident.
+    pub upload_time: Duration,
+    /// Time for the G-buffer.
+    pub gbuffer_time: Duration,
+}
+
+/// Renders on `device`; if that was our own choice and it can't hold the scene, on the CPU.
+///
+/// # Errors
+/// What the backend and the method refuse.
+pub fn render(
+    device: Device,
+    args: &RenderArgs,
+    prepared: &Prepared,
+    job: &Job,
+    interrupt: &Interrupt,
+    tell: &mut impl FnMut(String),
+) -> Result<Done, Failure> {
+    let session = Session { args, prepared, job, interrupt };
+    let done = match device {
+        Device::Cpu(backend) => session.run(&backend, tell),
+        #[cfg(feature = "gpu")]
+        Device::Gpu(backend) => match session.run(&*backend, tell) {
+            Err(error) if args.backend == crate::args::BackendChoice::Auto && fits_elsewhere(&error) => {
+                tell(format!("{} can't render this, the CPU does: {error}", backend.info().device));
+                session.run(&crate::device::cpu(args.threads)?, tell)
+            }
+            other => other,
+        },
+    };
+    done.map_err(Failure::at(Stage::Device))
+}
+
+/// Whether another backend may do what this one refused.
+#[cfg(feature = "gpu")]
+fn fits_elsewhere(error: &Error) -> bool {
+    matches!(error, Error::Unsupported(_) | Error::LimitExceeded { .. } | Error::OutOfMemory { .. })
+}
+
+struct Session<'a> {
+    args: &'a RenderArgs,
+    prepared: &'a Prepared,
+    job: &'a Job,
+    interrupt: &'a Interrupt,
+}
+
+impl Session<'_> {
+    fn run<B: Backend>(&self, backend: &B, tell: &mut impl FnMut(String)) -> twinlight::Result<Done> {
+        let compiled = &self.prepared.compiled;
+        let start = Instant::now();
+        let resident = backend.upload_scene(compiled)?;
+        let upload_time = start.elapsed();
+
+        let mut display = Display::new(self.args.progress);
+        let caught = || self.interrupt.caught();
+        let taken = passes::take(backend, &resident, compiled, self.job, caught, |p| display.update(&p));
+        display.finish();
+        let taken = taken?;
+        if let Some(lost) = &taken.lost {
+            tell(format!("{lost}; what was finished before is saved"));
+        }
+
+        let start = Instant::now();
+        // A lost device answers nothing more, and an interrupted user waits for nothing more.
+        let wanted = matches!(taken.stop, Stop::Samples | Stop::Time);
+        let gbuffer = match wanted.then(|| self.gbuffer(backend, &resident)) {
+            None => None,
+            Some(Ok(gbuffer)) => Some(gbuffer),
+            Some(Err(Error::Unsupported(why))) => {
+                tell(format!("no albedo, normal, depth and id layers: {why}"));
+                None
+            }
+            Some(Err(error)) => return Err(error),
+        };
+        let gbuffer_time = start.elapsed();
+        Ok(Done { taken, gbuffer, info: backend.info(), upload_time, gbuffer_time })
+    }
+
+    fn gbuffer<B: Backend>(&self, backend: &B, resident: &B::Scene) -> twinlight::Result<Vec<GBufferTexel>> {
+        let (width, height) = (self.job.settings.width, self.job.settings.height);
+        let camera = self.job.camera.record(width, height, self.prepared.compiled.origin)?;
+        let params = ShadePrimaryParams { camera, width, height, padding: [0; 2] };
+        let mut gbuffer = backend.zeroed::<GBufferTexel>(width as usize * height as usize)?;
+        backend.shade_primary(resident, &params, &mut gbuffer)?;
+        backend.download(&gbuffer)
+    }
+}

@@ -1,0 +1,128 @@
+//! How a picture was made, for machines: the JSON beside it and the attributes in the EXR header.
+
+use super::job::{Job, METHOD};
+use super::output::Outputs;
+use super::run::Done;
+use crate::args::RenderArgs;
+use crate::source::{self, Prepared};
+use serde_json::{Value, json};
+use std::time::Duration;
+use twinlight::kernels::trace_paths::FilmTexel;
+use twinlight::methods::reference::Sampler;
+
+/// Times that only the command knows.
+pub struct Times {
+    /// Writing pictures.
+    pub write: Duration,
+    /// Everything so far.
+    pub total: Duration,
+}
+
+/// Least and most samples of a pixel.
+fn samples_done(done: &Done) -> (u32, u32) {
+    let counts = || done.taken.film.texels().iter().map(|t| t.samples);
+    (counts().min().unwrap_or(0), counts().max().unwrap_or(0))
+}
+
+fn sampler_name(sampler: Sampler) -> &'static str {
+    match sampler {
+        Sampler::Sobol => "sobol",
+        Sampler::Independent => "independent",
+    }
+}
+
+/// What goes into EXR headers: only what the pixels depend on, so that the same picture is the same file whatever the
+/// number of threads and the hour.
+pub fn attributes(args: &RenderArgs, job: &Job, done: &Done) -> Vec<(&'static str, String)> {
+    let settings = &job.settings;
+    let mode = if done.info.strict { "strict" } else { "portable" };
+    vec![
+        ("version", env!("CARGO_PKG_VERSION").into()),
+        ("scene", source::stem(&args.scene)),
+        ("method", METHOD.into()),
+        ("backend", done.info.kind.into()),
+        ("adapter", done.info.device.clone()),
+        ("mode", mode.into()),
+        ("seed", settings.seed.to_string()),
+        ("sampler", sampler_name(settings.sampler).into()),
+        ("samples", samples_done(done).0.to_string()),
+        ("bounces", settings.bounces.map_or("unlimited".into(), |n| n.to_string())),
+        ("stop", done.taken.stop.name().into()),
+    ]
+}
+
+/// The sidecar.
+pub fn json(
+    args: &RenderArgs,
+    prepared: &Prepared,
+    job: &Job,
+    done: &Done,
+    outputs: &Outputs,
+    notices: &[String],
+    times: &Times,
+) -> String {
+    let (settings, camera) = (&job.settings, &job.camera);
+    let (least, most) = samples_done(done);
+    let seconds = |d: Duration| (d.as_secs_f64() * 1e6).round_ties_even() / 1e6;
+    let pixels = u64::from(settings.width) * u64::from(settings.height);
+    let paths: u64 = done.taken.film.texels().iter().map(|t| u64::from(t.samples)).sum();
+    let value = json!({
+        "twinlight": env!("CARGO_PKG_VERSION"),
+        "scene": { "source": args.scene, "triangles": prepared.scene.triangle_count() },
+        "files": outputs.pictures().map(|p| p.display().to_string()).collect::<Vec<_>>(),
+        "settings": {
+            "method": METHOD,
+            "size": [settings.width, settings.height],
+            "spp": args.spp.or(job.time.is_none().then_some(settings.samples)),
+            "time_s": job.time.map(seconds),
+            "bounces": settings.bounces,
+            "seed": settings.seed,
+            "sampler": sampler_name(settings.sampler),
+            "camera": {
+                "position": camera.position, "target": camera.target, "up": camera.up,
+                "vfov": camera.vfov_degrees
+            },
+            "exposure": args.tone.exposure,
+            "tonemap": args.tone.tonemap.key(),
+        },
+        "backend": {
+            "kind": done.info.kind,
+            "device": done.info.device,
+            "driver": done.info.driver,
+            "mode": if done.info.strict { "strict" } else { "portable" },
+        },
+        "result": {
+            "stop": done.taken.stop.name(),
+            "samples": { "least": least, "most": most },
+            "paths_per_second": paths as f64 / done.taken.elapsed.as_secs_f64().max(1e-9),
+        },
+        "seconds": {
+            "load": seconds(prepared.load_time),
+            "compile": seconds(prepared.compile_time),
+            "upload": seconds(done.upload_time),
+            "trace_paths": seconds(done.taken.elapsed),
+            "shade_primary": done.gbuffer.is_some().then(|| seconds(done.gbuffer_time)),
+            "write": seconds(times.write),
+            "total": seconds(times.total),
+        },
+        "bytes": {
+            "scene": source::compiled_bytes(&prepared.compiled),
+            "film": pixels * size_of::<FilmTexel>() as u64,
+            "peak_resident": peak_resident(),
+        },
+        "notices": notices,
+    });
+    text(&value)
+}
+
+fn text(value: &Value) -> String {
+    format!("{value:#}\n")
+}
+
+/// The most memory this process had at once, where the system says.
+fn peak_resident() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024)
+}

@@ -1,0 +1,69 @@
+//! From the name on the command line to a compiled scene.
+
+use crate::args::LoadArgs;
+use crate::exit::{Failure, Stage};
+use std::path::Path;
+use std::time::{Duration, Instant};
+use twinlight::io::toml_scene::RenderSettings;
+use twinlight::io::{self, builtin};
+use twinlight::scene::{self, CompiledScene, Scene};
+
+/// A scene that is ready to be looked at or rendered.
+pub struct Prepared {
+    /// As read, with a camera and a light if it had none.
+    pub scene: Scene,
+    /// For backends.
+    pub compiled: CompiledScene,
+    /// What a TOML scene file asks for.
+    pub settings: RenderSettings,
+    /// What a person should know.
+    pub notices: Vec<String>,
+    /// Time to read.
+    pub load_time: Duration,
+    /// Time to compile.
+    pub compile_time: Duration,
+}
+
+/// Reads, completes and compiles a scene.
+///
+/// # Errors
+/// Those of the readers and of [`scene::compile`].
+pub fn prepare(name: &str, args: &LoadArgs) -> Result<Prepared, Failure> {
+    let start = Instant::now();
+    let (mut scene, settings) =
+        io::load_with_settings(name, &args.options()).map_err(Failure::at(Stage::Input))?;
+    io::complete(&mut scene);
+    let load_time = start.elapsed();
+    let compiled = scene::compile(&scene, &args.limits()).map_err(Failure::at(Stage::Input))?;
+    let compile_time = start.elapsed() - load_time;
+    let mut notices = scene.notices.clone();
+    notices.extend(compiled.notices.iter().cloned());
+    if scene.triangle_count() == 0 {
+        notices.push("no triangles in the scene: there is nothing that light could meet".into());
+    }
+    if !scene.has_light() {
+        notices.push("no light in the scene: the picture is black".into());
+    }
+    Ok(Prepared { scene, compiled, settings, notices, load_time, compile_time })
+}
+
+/// What output files are called after: the file name without its extension, or the builtin's name.
+pub fn stem(name: &str) -> String {
+    match name.strip_prefix(builtin::PREFIX) {
+        Some(builtin) => builtin.to_owned(),
+        None => {
+            Path::new(name).file_stem().map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())
+        }
+    }
+}
+
+/// Bytes of a compiled scene's arrays.
+pub fn compiled_bytes(scene: &CompiledScene) -> u64 {
+    let bytes = size_of_val(&*scene.triangles)
+        + size_of_val(&*scene.attributes)
+        + size_of_val(&*scene.materials)
+        + size_of_val(&*scene.lights)
+        + size_of_val(&*scene.words)
+        + size_of_val(&*scene.bvh.nodes);
+    bytes as u64
+}
