@@ -1,9 +1,15 @@
 //! The command line.
 
+mod compare;
+mod conform;
 mod render;
+mod scene;
 mod values;
 
-pub use render::{LoadArgs, ModeName, ProgressMode, RenderArgs};
+pub use compare::CompareArgs;
+pub use conform::ConformArgs;
+pub use render::{LoadArgs, ModeName, ProgressMode, RenderArgs, ToneArgs};
+pub use scene::{ConvertArgs, InspectArgs, SceneCommand};
 pub use values::{BackendChoice, Bounces, Size};
 
 use crate::exit;
@@ -32,6 +38,19 @@ pub struct Cli {
 pub enum Command {
     /// Render a scene to PNG and EXR
     Render(Box<RenderArgs>),
+    /// Compare two pictures: error metrics with their formulas
+    Compare(CompareArgs),
+    /// Show what kernels can run on: the CPU and GPU adapters
+    Devices {
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Look at scenes and convert them
+    #[command(subcommand)]
+    Scene(SceneCommand),
+    /// Check every backend of this machine against the kernels' contracts
+    Conform(ConformArgs),
     /// Print a completion script for a shell
     #[command(
         after_help = "Example:\n  twinlight completions bash > ~/.local/share/bash-completion/completions/twinlight"
