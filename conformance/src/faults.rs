@@ -55,6 +55,47 @@ faults! {
         TraceLastRay "the last ray of a batch over 64 is not traced",
         TraceAnyInverted "occlusion is inverted",
         TraceAnyIgnoresMax "occlusion ignores t_max";
+    "shade_primary":
+        ShadeCornerOfPixel "rays go through the pixel's corner",
+        ShadeUpsideDown "rows run from the bottom",
+        ShadeNormalFollowsWinding "the geometric normal does not face the camera",
+        ShadeNormalAway "the shading normal faces away",
+        ShadeFlat "vertex normals are not interpolated",
+        ShadeLongNormals "shading normals are 1 % too long",
+        ShadeWrongMaterial "the material is the next one",
+        ShadeDistanceForDepth "depth is the distance from the eye",
+        ShadeUntextured "textures are left out",
+        ShadeGamma "albedo is gamma-encoded",
+        ShadeMissesTriangles "every seventh triangle is invisible",
+        ShadeNothingIsFar "depth of nothing is infinite",
+        ShadeAcceptsLengths "a buffer of another size is accepted";
+    "trace_paths":
+        PathsLoseBounce "one bounce less than asked for",
+        PathsStopEarly "paths end after three bounces",
+        PathsDoubleDirect "direct light counts twice",
+        PathsDropIndirect "indirect light is lost",
+        PathsBias "two percent of the light is lost",
+        PathsAlbedoBias "albedo is three percent too low",
+        PathsEmitterBias "emission met by rays is three percent too bright",
+        PathsLightPdf "the light's selection probability is wrong",
+        PathsTriangleArea "the density on emissive triangles is wrong",
+        PathsSphereRadius "sphere lights are three percent too small",
+        PathsHardSpot "spot lights have no falloff",
+        PathsMirrorWithoutTint "mirrors reflect everything",
+        PathsFixedIor "every glass has index 1.5",
+        PathsWrongLobe "the lobe's shadowing is wrong",
+        PathsNoGrazing "the lobe does not brighten at grazing angles",
+        PathsIgnoreFirstSample "sample ranges start at 0",
+        PathsIgnoreSeed "the seed is ignored",
+        PathsIgnoreSampler "the sampler is ignored",
+        PathsWholeImage "the pixel range is ignored",
+        PathsOverwriteFilm "sums are overwritten instead of added to",
+        PathsLoseCarry "the carry between the words of a sum is lost",
+        PathsLoseSpread "squares are not summed",
+        PathsCountTwice "one sample too many is counted",
+        PathsSwapChannels "red and blue change places",
+        PathsReject "sound samples are counted as rejected",
+        PathsAcceptAnything "parameters are not checked";
 }
 
 /// A bug the suite did not see.

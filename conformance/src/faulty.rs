@@ -1,8 +1,10 @@
 //! A backend with one planted bug: everything goes through to a sound backend, and one result comes back wrong.
 
 mod scan;
+mod shade_primary;
 mod sort;
 mod trace;
+mod trace_paths;
 
 use crate::faults::Fault;
 use bytemuck::Pod;
@@ -58,7 +60,8 @@ impl<B: Backend> Backend for Faulty<'_, B> {
     }
 
     fn upload_scene(&self, scene: &CompiledScene) -> Result<Self::Scene> {
-        Ok(FaultyScene { inner: self.inner.upload_scene(scene)?, host: scene.clone() })
+        let inner = self.inner.upload_scene(&trace_paths::broken_scene(self.fault, scene))?;
+        Ok(FaultyScene { inner, host: scene.clone() })
     }
 
     fn scan(&self, input: &B::Buffer<u32>, output: &mut B::Buffer<u32>) -> Result<u32> {
@@ -97,7 +100,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &ShadePrimaryParams,
         gbuffer: &mut B::Buffer<GBufferTexel>,
     ) -> Result<()> {
-        self.inner.shade_primary(&scene.inner, params, gbuffer)
+        shade_primary::shade_primary(self.inner, self.fault, scene, params, gbuffer)
     }
 
     fn trace_paths(
@@ -106,6 +109,6 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &TracePathsParams,
         film: &mut B::Buffer<FilmTexel>,
     ) -> Result<()> {
-        self.inner.trace_paths(&scene.inner, params, film)
+        trace_paths::trace_paths(self.inner, self.fault, scene, params, film)
     }
 }

@@ -2,18 +2,30 @@
 
 mod property;
 pub mod scan;
+pub mod shade_primary;
 pub mod sort;
 pub mod trace;
+pub mod trace_paths;
 
-use crate::trial::Listing;
+use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 3] = ["scan", "sort", "trace"];
+pub const STEMS: [&str; 5] = ["scan", "sort", "trace", "shade_primary", "trace_paths"];
 
 /// Lists every kernel's trials.
 pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     scan::list(list);
     sort::list(list);
     trace::list(list);
+    shade_primary::list(list);
+    trace_paths::list(list);
+}
+
+/// Bit equality is promised where float results are those of IEEE 754 evaluated as written.
+fn strict_only<B: Backend>(cx: &Context<'_, B>) -> Check {
+    if cx.backend.info().strict {
+        return Ok(());
+    }
+    Err(Failure::Skip("bit equality is promised in strict mode only".into()))
 }

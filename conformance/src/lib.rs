@@ -13,13 +13,14 @@
 //!
 //! *What is compared with what.* Never a backend with itself. [`oracle`] holds a third opinion per kernel: serial,
 //! naive on purpose, exact or in f64. [`kernels`] holds cases (edge ladders, proptest strategies with fixed seeds) and
-//! laws (permutation, splits, scale by powers of two). [`faults`] lists planted bugs, and a suite that lets one of them
-//! through fails its own test.
+//! laws (permutation, splits, scale by powers of two). [`cross`] compares two backends on whole scenes.
+//! [`faults`] lists planted bugs, and a suite that lets one of them through fails its own test.
 //!
 //! *To add a kernel*: `oracle/<stem>.rs`, `kernels/<stem>.rs` (listed in [`suite`]), `faulty/<stem>.rs` with its rows in
 //! [`faults::FAULTS`].
 
 pub mod compare;
+pub mod cross;
 pub mod expectations;
 pub mod faults;
 pub mod faulty;

@@ -2,5 +2,7 @@
 //! so that a misreading both twins share still shows.
 
 pub mod scan;
+pub mod shade_primary;
 pub mod sort;
 pub mod trace;
+pub mod trace_paths;

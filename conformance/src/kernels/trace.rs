@@ -11,6 +11,7 @@
 mod hard;
 mod laws;
 
+use super::strict_only;
 use crate::compare::{Evidence, Shape, exact};
 use crate::oracle::trace as oracle;
 use crate::scenes::{Rays, compiled, coplanar_copies, junction, room, scene_of, soup};
@@ -49,14 +50,6 @@ fn any<B: Backend>(cx: &Context<'_, B>, scene: &CompiledScene, rays: &[Ray]) -> 
     let mut occluded = cx.backend.upload(&vec![0xdead_beef_u32; rays.len()])?;
     cx.backend.trace_any(&device_scene, &device_rays, &mut occluded)?;
     Ok(cx.backend.download(&occluded)?)
-}
-
-/// Bit equality is promised where float results are those of IEEE 754 evaluated as written.
-fn strict_only<B: Backend>(cx: &Context<'_, B>) -> Check {
-    if cx.backend.info().strict {
-        return Ok(());
-    }
-    Err(Failure::Skip("bit equality is promised in strict mode only".into()))
 }
 
 /// Closest hits against the contract's formula without a hierarchy.

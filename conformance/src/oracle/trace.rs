@@ -14,13 +14,13 @@
 
 mod bounds;
 
-use bounds::{Possible, possible_hit};
+use bounds::possible_hit;
 use glam::Vec3;
 use twinlight_core::kernels::trace::{Hit, NO_HIT, Ray};
 use twinlight_core::scene::Triangle;
 use twinlight_core::transport::intersect::{RayFrame, TriangleHit, ray_frame, triangle};
 
-pub use bounds::Interval;
+pub use bounds::{Aim, Interval, Possible, wide};
 
 fn test(frame: &RayFrame, ray: &Ray, t: &Triangle) -> Option<TriangleHit> {
     triangle(frame, t.p0.into(), t.p1.into(), t.p2.into(), ray.t_min, ray.t_max)
@@ -67,6 +67,11 @@ impl Allowed {
 
 /// The answers that f64 and the derived intervals leave open. The ray's direction is not zero.
 pub fn closest(triangles: &[Triangle], ray: &Ray) -> Allowed {
+    closest_along(triangles, &Aim::from(ray))
+}
+
+/// As [`closest`], for a direction that is itself the result of float arithmetic.
+pub fn closest_along(triangles: &[Triangle], ray: &Aim) -> Allowed {
     let mut hits: Vec<(u32, Possible)> =
         triangles.iter().filter_map(|t| Some((t.id, possible_hit(ray, &[t.p0, t.p1, t.p2])?))).collect();
     let bound =

@@ -1,7 +1,8 @@
 //! Laws of `trace`: relations between answers that hold without knowing any.
 
-use super::{any, as_written, closest, on_every_scene, strict_only};
+use super::{any, as_written, closest, on_every_scene};
 use crate::compare::{Shape, exact};
+use crate::kernels::strict_only;
 use crate::scenes::{Rays, compiled, room, scene_of, soup};
 use crate::trial::{Check, Context, Listing, ensure, list_trials};
 use twinlight_core::Backend;

@@ -21,6 +21,8 @@ pub struct Interval {
 }
 
 impl Interval {
+    const ANY: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
+
     fn around(middle: f64, error: f64) -> Self {
         Self { low: middle - error, high: middle + error }
     }
@@ -43,16 +45,46 @@ pub struct Possible {
     pub v: Interval,
 }
 
-fn wide(p: [f32; 3]) -> DVec3 {
+/// Widens a position or direction.
+pub fn wide(p: [f32; 3]) -> DVec3 {
     DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]))
 }
 
+/// A ray whose direction is known up to an error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aim {
+    /// Start.
+    pub origin: DVec3,
+    /// Direction, any length but 0.
+    pub direction: DVec3,
+    /// Absolute error of each component of `direction`.
+    pub error: f64,
+    /// As [`Ray::t_min`].
+    pub t_min: f64,
+    /// As [`Ray::t_max`].
+    pub t_max: f64,
+}
+
+impl From<&Ray> for Aim {
+    fn from(ray: &Ray) -> Self {
+        Self {
+            origin: wide(ray.origin),
+            direction: wide(ray.direction),
+            error: 0.0,
+            t_min: f64::from(ray.t_min),
+            t_max: f64::from(ray.t_max),
+        }
+    }
+}
+
 /// What may be reported for a ray and three corners; `None` when nothing may.
-pub(super) fn possible_hit(ray: &Ray, corners: &[[f32; 3]; 3]) -> Option<Possible> {
-    let direction = wide(ray.direction);
-    let relative = corners.map(|p| wide(p) - wide(ray.origin));
+pub fn possible_hit(ray: &Aim, corners: &[[f32; 3]; 3]) -> Option<Possible> {
+    let direction = ray.direction;
+    let relative = corners.map(|p| wide(p) - ray.origin);
     let exact = moller_trumbore(&relative, direction);
-    let errors = EdgeErrors::of(&relative, direction);
+    // Share of the dominant component by which the direction may be off.
+    let spread = ray.error / direction.abs().max_element();
+    let errors = EdgeErrors::of(&relative, direction, spread);
 
     // [1] Edge functions: mixed signs beyond doubt miss, equal signs beyond doubt hit.
     let above = |i: usize| exact.edges[i] > errors.edges[i];
@@ -74,7 +106,7 @@ pub(super) fn possible_hit(ray: &Ray, corners: &[[f32; 3]; 3]) -> Option<Possibl
     let depths = relative.map(|a| a[errors.axis] / direction[errors.axis]);
     let reach = depths.iter().fold(0.0_f64, |m, z| m.max(z.abs()));
     // sz·a: 1 + 2.5 + 1; times an edge function: 1; two additions: 2; division and its divisor's two additions: 4.5.
-    let rounding = 12.0 * ETA * reach;
+    let rounding = (12.0 * ETA + spread) * reach;
     let hull = Interval {
         low: depths.iter().fold(f64::INFINITY, |m, &z| m.min(z)) - rounding,
         high: depths.iter().fold(f64::NEG_INFINITY, |m, &z| m.max(z)) + rounding,
@@ -93,7 +125,7 @@ pub(super) fn possible_hit(ray: &Ray, corners: &[[f32; 3]; 3]) -> Option<Possibl
     }
     // t = max(t_edge, near).
     t = Interval { low: t.low.max(slab.near.low), high: t.high.max(slab.near.high) };
-    let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
+    let (t_min, t_max) = (ray.t_min, ray.t_max);
     if t.high <= t_min || t.low > t_max {
         return None;
     }
@@ -131,14 +163,16 @@ struct EdgeErrors {
 }
 
 impl EdgeErrors {
-    fn of(relative: &[DVec3; 3], direction: DVec3) -> Self {
+    fn of(relative: &[DVec3; 3], direction: DVec3, spread: f64) -> Self {
         let axis = (0..3).fold(0, |k, i| if direction[i].abs() > direction[k].abs() { i } else { k });
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         // (coordinate, error) in the sheared plane: a_k − s·a_z with one rounding of each difference to the origin,
-        // 2.5 of the shear, one of the product, one of the subtraction.
+        // 2.5 of the shear, one of the product, one of the subtraction; a direction that is off by `spread` in both its
+        // components moves the shear by twice that.
         let sheared = |a: &DVec3, k: usize| {
             let product = direction[k] / direction[axis] * a[axis];
-            (a[k] - product, ETA * (2.0 * a[k].abs() + 5.5 * product.abs()))
+            let error = ETA * (2.0 * a[k].abs() + 5.5 * product.abs()) + 2.0 * spread * a[axis].abs();
+            (a[k] - product, error)
         };
         let x = [0, 1, 2].map(|c| sheared(&relative[c], i));
         let y = [0, 1, 2].map(|c| sheared(&relative[c], j));
@@ -157,21 +191,30 @@ struct Slab {
     near: Interval,
 }
 
-fn slab(ray: &Ray, corners: &[[f32; 3]; 3]) -> Slab {
+fn slab(ray: &Aim, corners: &[[f32; 3]; 3]) -> Slab {
     let points = corners.map(wide);
     let (min, max) = (points[0].min(points[1]).min(points[2]), points[0].max(points[1]).max(points[2]));
     let pad = (max - min).max_element() * f64::from(PAD_EXTENT)
         + min.abs().max(max.abs()).max_element() * f64::from(PAD_COORDINATE);
     let mut sides = [(Interval { low: 0.0, high: 0.0 }, Interval { low: 0.0, high: 0.0 }); 3];
     for (axis, side) in sides.iter_mut().enumerate() {
-        let d = f64::from(ray.direction[axis]);
-        let inverse = 1.0 / d.abs().max(f64::from(MIN_DIRECTION)) * if d < 0.0 { -1.0 } else { 1.0 };
-        let origin = f64::from(ray.origin[axis]);
+        let d = ray.direction[axis];
+        let magnitude = d.abs().max(f64::from(MIN_DIRECTION));
+        let inverse = 1.0 / magnitude * if d < 0.0 { -1.0 } else { 1.0 };
+        let origin = ray.origin[axis];
+        // A component that may as well be 0 or change its sign says nothing about this axis.
+        let relative =
+            if ray.error < magnitude { ray.error / (magnitude - ray.error) } else { f64::INFINITY };
         // One rounding of the padded bound (and three of the small pad), one of the difference, 2.5 of the
         // reciprocal, one of the product.
         let plane = |bound: f64| {
             let t = (bound - origin) * inverse;
-            Interval::around(t, ETA * ((bound.abs() + 3.0 * pad) * inverse.abs() + 4.5 * t.abs()))
+            let rounding = ETA * ((bound.abs() + 3.0 * pad) * inverse.abs() + 4.5 * t.abs());
+            if relative > 1.0 {
+                Interval::ANY
+            } else {
+                Interval::around(t, rounding + 2.0 * relative * t.abs())
+            }
         };
         let (a, b) = (plane(min[axis] - pad), plane(max[axis] + pad));
         *side = if inverse < 0.0 { (b, a) } else { (a, b) };
@@ -179,7 +222,8 @@ fn slab(ray: &Ray, corners: &[[f32; 3]; 3]) -> Slab {
     let out = |t: f64| if t < 0.0 { t } else { t * f64::from(SLAB_FAR_FACTOR) * (1.0 + ETA) };
     let near = Interval {
         low: sides.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s.0.low)),
-        high: sides.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s.0.high)),
+        // An axis about which the direction says nothing bounds nothing.
+        high: sides.iter().map(|s| s.0.high).filter(|h| h.is_finite()).fold(f64::NEG_INFINITY, f64::max),
     };
     let far_high = sides.iter().fold(f64::INFINITY, |m, s| m.min(out(s.1.high)));
     if near.low.max(0.0) > far_high {
@@ -188,5 +232,6 @@ fn slab(ray: &Ray, corners: &[[f32; 3]; 3]) -> Slab {
     // Entry and exit of one axis share the reciprocal, so rounding can't swap them; only two axes can disagree.
     let apart = (0..3).all(|i| (0..3).all(|j| i == j || sides[i].0.high <= sides[j].1.low));
     let ahead = sides.iter().all(|s| s.1.low >= 0.0);
+
     Slab { meets: Some(apart && ahead), near }
 }

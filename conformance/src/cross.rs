@@ -1,0 +1,170 @@
+//! Two backends on whole scenes, one against the other: bit for bit when both evaluate floats as written, else by the
+//! accuracy class of each output.
+
+use crate::compare::{Shape, exact};
+use crate::expectations::Verdict;
+use crate::kernels::trace_paths::{params, traced};
+use crate::scenes::{Rays, compiled};
+use crate::trial::{Check, Context, Failure, Options, ensure};
+use twinlight_core::Backend;
+use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use twinlight_core::kernels::trace::Hit;
+use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsParams};
+use twinlight_core::scene::{Camera, Scene};
+use twinlight_fixtures::scenes::builtin;
+use twinlight_methods::post::image::Image;
+use twinlight_methods::post::metrics::ztest::{Estimate, ZTest, ZTestSettings};
+
+/// A comparison of two backends.
+pub type CrossCheck<A, B> = fn(&A, &B) -> Check;
+
+/// Every comparison, by name. The first backend is the yardstick in messages.
+pub fn checks<A: Backend, B: Backend>() -> Vec<(&'static str, CrossCheck<A, B>)> {
+    vec![("trace", hits), ("shade_primary", gbuffers), ("trace_paths", films)]
+}
+
+/// The verdict of one comparison.
+pub fn judge(check: Check) -> Verdict {
+    match check {
+        Ok(()) => Verdict::Passed,
+        Err(Failure::Mismatch(evidence)) => Verdict::Failed(evidence),
+        Err(Failure::Skip(reason)) => Verdict::Skipped(reason),
+    }
+}
+
+/// Builtin scenes small enough to upload in a moment: every material, light and attribute between them.
+const SCENES: [&str; 8] =
+    ["cornell", "axis", "textured", "lights", "veach", "furnace", "environment", "materials"];
+
+fn each_scene(check: impl Fn(&Scene) -> Check) -> Check {
+    for name in SCENES {
+        let scene = builtin(name).ok_or_else(|| Failure::Mismatch(format!("no builtin scene {name}")))?;
+        check(&scene).map_err(|f| f.within(name))?;
+    }
+    Ok(())
+}
+
+fn both_strict<A: Backend, B: Backend>(a: &A, b: &B) -> bool {
+    a.info().strict && b.info().strict
+}
+
+fn context<'a, B>(backend: &'a B, options: &'a Options, name: &'a str) -> Context<'a, B> {
+    Context { backend, options, name }
+}
+
+/// Closest hits. In portable mode both are held to the oracle's intervals by the suite; here at most one ray in a
+/// thousand may name another triangle: edges and equal distances, which incoherent rays all but avoid.
+fn hits<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    fn run<B: Backend>(backend: &B, scene: &Scene, strict: bool) -> Result<Vec<Hit>, Failure> {
+        let compiled = compiled(scene);
+        let mut rays = Rays::new(&compiled, 5);
+        let rays: Vec<_> =
+            if strict { rays.mixed(4_000) } else { (0..4_000).map(|_| rays.incoherent()).collect() };
+        let resident = backend.upload_scene(&compiled)?;
+        let rays = backend.upload(&rays)?;
+        let mut hits = backend.zeroed::<Hit>(4_000)?;
+        backend.trace_closest(&resident, &rays, &mut hits)?;
+        Ok(backend.download(&hits)?)
+    }
+    let strict = both_strict(a, b);
+    each_scene(|scene| {
+        let (want, got) = (run(a, scene, strict)?, run(b, scene, strict)?);
+        if strict {
+            return exact(&context(b, &Options::default(), "cross.trace"), "hits", &got, &want, Shape::Line);
+        }
+        let other = want.iter().zip(&got).filter(|(a, b)| a.triangle != b.triangle).count();
+        ensure(other <= 4, || format!("{other} of 4000 rays meet another triangle"))
+    })
+}
+
+/// G-buffers of 64 × 48 pixels. In portable mode at most one pixel in a hundred may show another triangle: those that
+/// an edge crosses at their centre.
+fn gbuffers<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    fn run<B: Backend>(backend: &B, scene: &Scene) -> Result<Vec<GBufferTexel>, Failure> {
+        let compiled = compiled(scene);
+        let (width, height) = (64, 48);
+        let camera = Camera::of_scene(scene).ok_or_else(|| Failure::Mismatch("no camera".into()))?;
+        let camera = camera.record(width, height, compiled.origin)?;
+        let params = ShadePrimaryParams { camera, width, height, padding: [0; 2] };
+        let resident = backend.upload_scene(&compiled)?;
+        let mut gbuffer = backend.zeroed::<GBufferTexel>(64 * 48)?;
+        backend.shade_primary(&resident, &params, &mut gbuffer)?;
+        Ok(backend.download(&gbuffer)?)
+    }
+    each_scene(|scene| {
+        let (want, got) = (run(a, scene)?, run(b, scene)?);
+        if both_strict(a, b) {
+            let options = Options::default();
+            return exact(
+                &context(b, &options, "cross.shade_primary"),
+                "gbuffer",
+                &got,
+                &want,
+                Shape::Image { width: 64 },
+            );
+        }
+        let other = want.iter().zip(&got).filter(|(a, b)| a.triangle != b.triangle).count();
+        ensure(other <= 30, || format!("{other} of 3072 pixels show another triangle"))
+    })
+}
+
+/// Films of 32 × 32 pixels. In strict mode the same bits; else two estimates of one picture, with independent seeds,
+/// under the z-test with Šidák's correction and the signed-bias test.
+fn films<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    let (width, height) = (32, 32);
+    each_scene(|scene| {
+        let compiled = compiled(scene);
+        let strict = both_strict(a, b);
+        let samples = if strict { 8 } else { 256 };
+        let params = params(scene, &compiled, (width, height), samples, None)?;
+        if strict {
+            let params = TracePathsParams { sampler: SAMPLER_SOBOL, ..params };
+            let (want, got) = (traced(a, &compiled, &params)?, traced(b, &compiled, &params)?);
+            let options = Options::default();
+            return exact(
+                &context(b, &options, "cross.trace_paths"),
+                "film",
+                &got,
+                &want,
+                Shape::Image { width: 32 },
+            );
+        }
+        let other = TracePathsParams { seed: params.seed + 1, ..params };
+        let estimates = [traced(a, &compiled, &params)?, traced(b, &compiled, &other)?];
+        z_test(&estimates, &params)
+    })
+}
+
+/// Means and variances of both films, compared.
+fn z_test(films: &[Vec<FilmTexel>; 2], params: &TracePathsParams) -> Check {
+    let failed = |error: twinlight_methods::post::PostError| Failure::Mismatch(error.to_string());
+    let mut images = Vec::new();
+    for film in films {
+        let film =
+            twinlight_methods::reference::Film::new(params.width, params.height, params, film.clone())?;
+        let mean = film.radiance();
+        // One variance per pixel is known, of luminance; a channel's is taken as at most that of a sample whose light is
+        // all in it: (1 / 0.0722)² would pass anything, so channels are compared as luminance only.
+        let luminance = |c: &[f32; 3]| [0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; 3];
+        let mean = mean.iter().map(luminance).collect();
+        let variance = film.variance().iter().map(|v| [*v; 3]).collect();
+        let image = |pixels| Image::new(params.width, params.height, pixels).map_err(failed);
+        images.push((image(mean)?, image(variance)?));
+    }
+    let estimate = |i: usize| Estimate { mean: &images[i].0, variance_of_mean: &images[i].1 };
+    // Lamps and caustics are rare events whose spread 256 samples don't show: two pixels in a hundred may fail.
+    let settings = ZTestSettings { allowed_fraction: 0.02, ..ZTestSettings::default() };
+    let test = ZTest::new(estimate(0), estimate(1), settings).map_err(failed)?;
+    ensure(test.passes(), || {
+        format!(
+            "z-test: {} of {} values beyond {:.2} (worst {:.2} at {:?}), bias z {:?} beyond {:.2}",
+            test.failures,
+            test.values,
+            test.threshold,
+            test.max_abs_z,
+            test.worst,
+            test.bias_z,
+            test.bias_threshold
+        )
+    })
+}
