@@ -1,0 +1,59 @@
+//! The suite on every GPU adapter of this machine, in strict and in portable mode, and each against the CPU.
+//!
+//! `TWINLIGHT_REQUIRE_GPU=1` turns missing adapters into failures; on Linux both software adapters are demanded.
+
+#[path = "common/list.rs"]
+mod list;
+#[path = "common/suite.rs"]
+mod suite;
+
+use std::process::ExitCode;
+use twinlight_backend_cpu::CpuBackend;
+use twinlight_backend_gpu::{AdapterReport, AdapterSelector, DeviceOptions, GpuBackend, Mode, adapters};
+use twinlight_conformance::{Effort, Verdict, cross, require};
+
+fn main() -> ExitCode {
+    let mut list = list::List::from_args();
+    let reports = adapters();
+    let names: Vec<String> = reports.iter().map(ToString::to_string).collect();
+    let missing = require::missing(&names, cfg!(target_os = "linux"));
+    list.add("adapters are there".into(), move || match missing.as_slice() {
+        [] => Verdict::Passed,
+        missing if require::gpu_required() => Verdict::Failed(format!("missing: {}", missing.join(", "))),
+        missing => Verdict::Skipped(format!("missing: {}", missing.join(", "))),
+    });
+    for (index, report) in reports.iter().enumerate() {
+        for mode in [Mode::Strict, Mode::Portable] {
+            add_mode(&mut list, index, report, mode);
+        }
+    }
+    list.run()
+}
+
+fn add_mode(list: &mut list::List, index: usize, report: &AdapterReport, mode: Mode) {
+    let label = format!("{} ({})", report.name, mode.name());
+    if let Some(why) = report.unusable.clone() {
+        return list.add(label, move || Verdict::Skipped(why));
+    }
+    if mode == Mode::Strict && !report.strict {
+        return list.add(label, || Verdict::Skipped("the adapter takes no SPIR-V, so no strict mode".into()));
+    }
+    let options = DeviceOptions {
+        adapter: AdapterSelector::Index(index),
+        mode: Some(mode),
+        ..DeviceOptions::default()
+    };
+    match GpuBackend::open(&options) {
+        Ok(backend) => {
+            // One device per adapter and mode for the life of the process: devices are dear, leaks of them too.
+            let backend: &'static GpuBackend = Box::leak(Box::new(backend));
+            suite::add(list, &label, backend, Effort::Quick);
+            for (name, check) in cross::checks::<CpuBackend, GpuBackend>() {
+                list.add(format!("{label} against cpu: {name}"), move || {
+                    cross::judge(check(&CpuBackend::new(), backend))
+                });
+            }
+        }
+        Err(error) => list.add(format!("{label} opens"), move || Verdict::Failed(error.to_string())),
+    }
+}
