@@ -7,12 +7,17 @@ use twinlight::methods::post::PostError;
 /// The exit codes, as `--help` prints them.
 pub const TABLE: &str = "\
 Exit codes:
-  0  done                          6  memory or another limit exceeded
-  1  defect of twinlight           7  backend not available
-  2  wrong command line            8  device lost: worth a retry
-  3  bad scene or picture         10  pictures differ, conformance failed
-  4  nothing was run             130  interrupted (Ctrl-C), partial result saved
-  5  a file can't be read or written  143  the same by SIGTERM";
+    0  done
+    1  defect of twinlight
+    2  wrong command line
+    3  bad scene or picture
+    4  nothing was run
+    5  a file can't be read or written
+    6  memory or another limit exceeded
+    7  backend not available
+    8  device lost: worth a retry
+   10  pictures differ, or conformance failed
+  130  interrupted by Ctrl-C, 143 by SIGTERM; what was finished is saved";
 
 /// What was being done when the library refused: the same error means something else elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

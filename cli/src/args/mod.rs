@@ -17,20 +17,21 @@ use clap::{Parser, Subcommand};
 
 /// Global illumination on a CPU or a GPU, with the same bits on both.
 #[derive(Debug, Parser)]
-#[command(
-    name = "twinlight",
-    version,
-    propagate_version = true,
-    infer_subcommands = false,
-    max_term_width = 100,
-    after_help = "Start with:  twinlight render builtin:cornell\nThen:        twinlight scene list    \
-                  twinlight help render",
-    after_long_help = exit::TABLE
-)]
+#[command(name = "twinlight", version, max_term_width = 100, after_help = START, after_long_help = long_help())]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+}
+
+const START: &str = "\
+Start with:
+  twinlight render builtin:cornell    writes cornell.png, cornell.exr and cornell.json here
+  twinlight scene list                other scenes that need no file
+  twinlight help render               every flag, with examples";
+
+fn long_help() -> String {
+    format!("{START}\n\n{}", exit::TABLE)
 }
 
 /// The commands.

@@ -83,10 +83,40 @@ impl Scene {
     /// Whether anything in the scene gives light.
     pub fn has_light(&self) -> bool {
         let emits = |m: &Material| m.emission.iter().any(|&e| e > 0.0);
+        let glows = |id: u32| self.materials.get(id as usize).is_some_and(emits);
+        let placed = |i: &Instance| match i.material {
+            Some(id) => glows(id),
+            None => {
+                let mesh = self.meshes.get(i.mesh as usize);
+                mesh.is_some_and(|mesh| mesh.material_ids.iter().any(|&id| glows(id)))
+            }
+        };
         !self.lights.is_empty()
             || self.environment.as_ref().is_some_and(Environment::is_bright)
-            || self.meshes.iter().any(|mesh| {
-                mesh.material_ids.iter().any(|&id| self.materials.get(id as usize).is_some_and(emits))
-            })
+            || self.instances.iter().any(placed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A placement's material decides, not the one that it replaces.
+    #[test]
+    fn light_is_what_placements_give() {
+        let mut scene = Scene::default();
+        let dark = scene.add_material(Material::default());
+        let bright = scene.add_material(Material::emitter("lamp", [1.0; 3]));
+        scene.add_mesh(Mesh::new("triangle", vec![[0.0; 3]; 3], vec![[0, 1, 2]], dark));
+        assert!(!scene.has_light());
+        scene.instances[0].material = Some(bright);
+        assert!(scene.has_light());
+        scene.meshes[0].material_ids = vec![bright];
+        scene.instances[0].material = Some(dark);
+        assert!(!scene.has_light());
+        scene.instances[0].material = None;
+        assert!(scene.has_light());
+        scene.instances.clear();
+        assert!(!scene.has_light(), "a mesh without a placement is not in the picture");
     }
 }
