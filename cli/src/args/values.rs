@@ -152,8 +152,8 @@ mod tests {
             (camera.position, camera.up, camera.vfov_degrees),
             ([0.0, 1.0, 3.0], [0.0, 1.0, 0.0], 40.0)
         );
-        let CameraArg(camera) = "0,1,3 0,1,0 0,0,1 35.5".parse().unwrap();
-        assert_eq!((camera.up, camera.vfov_degrees), ([0.0, 0.0, 1.0], 35.5));
+        let CameraArg(camera) = "0,1,3 0,1,0 1,1,0 35.5".parse().unwrap();
+        assert_eq!((camera.up, camera.vfov_degrees), ([1.0, 1.0, 0.0], 35.5));
         for bad in
             ["", "0,1 0,1,0 40", "0,1,3 0,1,0", "0,1,3 0,1,3 40", "0,0,3 0,0,0 180", "nan,0,0 0,0,1 40"]
         {

@@ -25,7 +25,7 @@ fn wrong_flags_are_2_and_say_what_is_right() {
         ("--camera", "0,0 1,1,1 40", "vertical field of view"),
         ("--threads", "0", "1..=1024"),
         ("--backend", "cuda", "auto, cpu, gpu"),
-        ("--max-memory", "1.5G", "whole number"),
+        ("--max-memory", "1.5G", "such as 4GiB"),
         ("--tonemap", "filmic", "none, reinhard, aces"),
         ("--exposure", "99", "-64..=64"),
         ("-o", "picture.jpg", ".png or .exr"),

