@@ -14,8 +14,8 @@ pub const OUT_OF_RANGE: Words = [u32::MAX, u32::MAX];
 pub fn from_float(x: f32, exponent: i32) -> Words {
     let scale = f64::from_bits(((1023 + exponent) as u64) << 52);
     let scaled = f64::from(x) * scale;
-    // Written so that NaN is out of range.
-    if !(scaled >= 0.0 && scaled < 4_611_686_018_427_387_904.0) {
+    // A NaN is in no range.
+    if !(0.0..4_611_686_018_427_387_904.0).contains(&scaled) {
         return OUT_OF_RANGE;
     }
     if x < f32::MIN_POSITIVE {
