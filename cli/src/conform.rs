@@ -20,7 +20,8 @@ pub fn run(args: &ConformArgs) -> Result<(), Failure> {
     let date = date(SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or(Duration::ZERO));
     let mut runs = Runs { args, options, date, reports: Vec::new() };
     if runs.wants(&["cpu"]) {
-        runs.run(&CpuBackend::new())?;
+        let found = runs.trials(&CpuBackend::new());
+        runs.keep(found)?;
     }
     gpus(&mut runs)?;
     let Runs { reports, .. } = runs;
@@ -64,15 +65,23 @@ impl Runs<'_> {
         self.args.adapter.is_empty() || self.args.adapter.iter().any(fits)
     }
 
-    /// Runs the trials that are asked for and prints them.
-    fn run<B: Backend + Sync>(&mut self, backend: &B) -> Result<(), Failure> {
+    /// Whether a trial of this name is asked for.
+    fn includes(&self, trial: &str) -> bool {
+        let filter = &self.args.filter;
+        filter.is_empty() || filter.iter().any(|part| trial.contains(part.as_str()))
+    }
+
+    /// Runs the trials that are asked for.
+    fn trials<B: Backend + Sync>(&self, backend: &B) -> Report {
         let mut found = Report::new(backend.info(), &self.date);
-        for trial in suite(backend, &self.options) {
-            let filter = &self.args.filter;
-            if filter.is_empty() || filter.iter().any(|part| trial.name.contains(part.as_str())) {
-                found.run(&trial, expectations::KNOWN);
-            }
+        for trial in suite(backend, &self.options).iter().filter(|trial| self.includes(&trial.name)) {
+            found.run(trial, expectations::KNOWN);
         }
+        found
+    }
+
+    /// Prints and keeps a report, unless nothing ran.
+    fn keep(&mut self, found: Report) -> Result<(), Failure> {
         if !found.rows.is_empty() {
             report::print(&format!("{}\n", found.table()))?;
             self.reports.push(found);
@@ -98,10 +107,28 @@ fn gpus(runs: &mut Runs<'_>) -> Result<(), Failure> {
             let selector = AdapterSelector::Index(index);
             let options = DeviceOptions { adapter: selector, mode: Some(mode), ..DeviceOptions::default() };
             let backend = GpuBackend::open(&options).map_err(Failure::at(Stage::Device))?;
-            runs.run(&backend)?;
+            let mut found = runs.trials(&backend);
+            against_cpu(runs, &backend, &mut found);
+            runs.keep(found)?;
         }
     }
     Ok(())
+}
+
+/// Whole scenes on both backends, compared.
+#[cfg(feature = "gpu")]
+fn against_cpu(runs: &Runs<'_>, backend: &twinlight::gpu::GpuBackend, found: &mut Report) {
+    use std::time::Instant;
+    use twinlight_conformance::cross;
+    let cpu = CpuBackend::new();
+    for (kernel, check) in cross::checks() {
+        let name = format!("{kernel}.against_cpu");
+        if runs.includes(&name) {
+            let start = Instant::now();
+            let verdict = cross::judge(check(&cpu, backend));
+            found.push(kernel, name, verdict, start.elapsed().as_secs_f64());
+        }
+    }
 }
 
 #[cfg(not(feature = "gpu"))]
