@@ -3,7 +3,6 @@
 use crate::exit::Failure;
 use crate::report;
 use serde_json::{Value, json};
-use std::fmt::Write as _;
 use twinlight::Backend;
 use twinlight::cpu::CpuBackend;
 
@@ -54,6 +53,7 @@ fn adapters_json() -> Value {
 
 #[cfg(feature = "gpu")]
 fn adapters_text() -> String {
+    use std::fmt::Write as _;
     let adapters = twinlight::gpu::adapters();
     let mut text = String::new();
     // Writing to a string can't fail.
