@@ -3,12 +3,14 @@
 
     cargo build --release
     python3 -m venv target/peers && target/peers/bin/pip install mitsuba numpy
-    target/peers/bin/python benchmarks/beside_mitsuba.py [--scene NAME]... [--rounds N] [--spp N] [--quick]
+    target/peers/bin/python benchmarks/beside_mitsuba.py
+
+About ten minutes on two cores; for a look, add --rounds 3 --reference-spp 512 --seconds 0.5 2 --seeds 1.
 
 Same triangles, normals, materials, light and camera, 256x256, box filter, unlimited bounces, roulette from the fourth
 vertex on. First it checks that both converge to the same picture: what is not the same is not worth timing. Mitsuba is
 needed for measuring only; twinlight never depends on it. Its llvm variants look for LLVM's library where
-DRJIT_LIBLLVM_PATH says (Debian: libllvm19).
+DRJIT_LIBLLVM_PATH says (Debian: libllvm19, /usr/lib/x86_64-linux-gnu/libLLVM.so.19.1).
 
 Times: the kernel alone for twinlight, mi.render() alone for Mitsuba, which has compiled its kernels before. Neither
 counts loading the scene or building its hierarchy.
@@ -29,25 +31,26 @@ from contenders import SIZE, Mitsuba, Twinlight
 from measures import Agreement, Converged, combined, rel_mse, spread
 
 ROOT = Path(__file__).resolve().parent.parent
-SCENES = ["cornell", "room-70k", "room-1m"]
+SCENES = ["builtin:cornell", "builtin:room-70k", "builtin:room-1m"]
 # Seeds below this one are for timing, from it on for references: no picture is judged by its own samples.
 REFERENCE_SEED = 1000
 
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scene", action="append", choices=SCENES, help="default: all three")
+    parser.add_argument("--scene", action="append", help=f"of diffuse surfaces; default: {', '.join(SCENES)}")
     parser.add_argument("--rounds", type=int, default=7, help="alternating rounds of the timing")
     parser.add_argument("--spp", type=int, default=64, help="samples per pixel of the timing")
     parser.add_argument("--reference-spp", type=int, default=2048, help="samples per pixel of each converged picture")
     parser.add_argument("--batches", type=int, default=16, help="independent parts of each converged picture")
     parser.add_argument("--seconds", type=float, nargs="*", default=[0.5, 1.0, 2.0, 5.0], help="of error over time")
     parser.add_argument("--seeds", type=int, default=3, help="pictures whose errors are averaged")
-    parser.add_argument("--quick", action="store_true", help="a look: few rounds, noisy references")
     parser.add_argument("--twinlight", type=Path, default=ROOT / "target/release/twinlight")
     chosen = parser.parse_args()
-    if chosen.quick:
-        chosen.rounds, chosen.reference_spp, chosen.seconds, chosen.seeds = 3, 512, [0.5, 2.0], 2
+    if not chosen.twinlight.exists():
+        parser.error(f"{chosen.twinlight} is not there: cargo build --release")
+    if chosen.batches < 2 or chosen.reference_spp < chosen.batches:
+        parser.error("a converged picture needs two batches and a sample for each")
     return chosen
 
 
@@ -63,24 +66,20 @@ def main() -> None:
         scalar, llvm = Mitsuba("scalar_rgb"), Mitsuba("llvm_ad_rgb")
         print(heading(mi.__version__, chosen))
         for scene in chosen.scene or SCENES:
-            exported = folder / scene
-            export(scene, exported)
+            exported = folder / "scene.toml"
+            convert = [chosen.twinlight, "scene", "convert", scene, exported]
+            subprocess.run(convert, check=True, stdout=subprocess.DEVNULL)
             for contender in (ours, scalar, llvm):
                 contender.load(scene, exported)
             measure(scene, ours, scalar, llvm, chosen)
 
 
-def export(scene: str, folder: Path) -> None:
-    words = "cargo run --quiet --release --locked -p twinlight-fixtures --example export_scene --".split()
-    subprocess.run([*words, scene, folder], check=True, cwd=ROOT)
-
-
 def heading(mitsuba_version: str, chosen: argparse.Namespace) -> str:
-    version = subprocess.run([chosen.twinlight, "--version"], check=True, capture_output=True, text=True).stdout.strip()
+    version = subprocess.check_output([chosen.twinlight, "--version"], text=True).strip()
     load = ", ".join(f"{x:.1f}" for x in os.getloadavg())
     return (
-        f"{version} beside Mitsuba {mitsuba_version}, {datetime.date.today()}, {processor()}, {os.cpu_count()} threads, "
-        f"{SIZE}×{SIZE}, box filter, unlimited bounces. Load averages at the start: {load}."
+        f"{version} beside Mitsuba {mitsuba_version}, {datetime.date.today()}, {processor()}, {os.cpu_count()} threads,"
+        f" {SIZE}×{SIZE}, box filter, unlimited bounces. Load averages at the start: {load}."
     )
 
 

@@ -1,8 +1,7 @@
-"""Two renderers behind one call: `render(spp, seed, sampler)` takes a picture of the loaded scene and says what it cost."""
+"""Two renderers behind one call: `render(spp, seed, sampler)` takes a picture of the loaded scene, timed."""
 
 import json
 import multiprocessing
-import os
 import resource
 import subprocess
 import time
@@ -11,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
+from scenes import scene_dict
+
+# Pixels along a side of every picture.
 SIZE = 256
-# Vertex after which both let roulette end a path. Mitsuba's own default is 5, twinlight's is 4.
-ROULETTE_BEGIN = 4
 # A wavefront of the LLVM backend keeps the state of all its paths in memory.
 MITSUBA_SPP_PER_CALL = 64
 
@@ -50,7 +50,7 @@ class Twinlight:
 
     def _run(self, spp: int, seed: int, sampler: str) -> tuple[float, float]:
         before = children_seconds()
-        words = [self.command, "render", f"builtin:{self.scene}", "-o", self.folder / "picture.exr"]
+        words = [self.command, "render", self.scene, "-o", self.folder / "picture.exr"]
         words += ["--backend", "cpu", "--size", f"{SIZE}x{SIZE}", "--bounces", "unlimited", "--progress", "never"]
         words += ["--spp", str(spp), "--seed", str(seed), "--sampler", sampler]
         subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
@@ -94,12 +94,13 @@ def children_seconds() -> float:
 
 
 def read_image(path: Path) -> np.ndarray:
-    """The first RGB layer of an EXR file."""
+    """The channels R, G, B of an EXR file, beside whatever other layers it has."""
     import mitsuba as mi
 
-    layers = dict(mi.Bitmap(str(path)).split())
-    root = np.array(layers["<root>"].convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
-    return root.astype(np.float64)
+    bitmap = mi.Bitmap(str(path))
+    names = [field.name for field in bitmap.struct_()]
+    pixels = np.array(bitmap).reshape(bitmap.height(), bitmap.width(), len(names))
+    return pixels[:, :, [names.index(name) for name in "RGB"]].astype(np.float64)
 
 
 def serve(variant: str, pipe) -> None:
@@ -114,7 +115,7 @@ def serve(variant: str, pipe) -> None:
         except EOFError:
             return
         if word == "load":
-            scene = mi.load_dict(scene_dict(mi, arguments[0]))
+            scene = mi.load_dict(scene_dict(mi, arguments[0], SIZE))
             pipe.send(None)
         else:
             pipe.send(shoot(mi, scene, *arguments))
@@ -131,43 +132,3 @@ def shoot(mi, scene, spp: int, seed: int) -> Shot:
         image += np.array(picture, dtype=np.float64) * count
         done, call = done + count, call + 1
     return Shot(image / spp, spp, time.perf_counter() - start, time.process_time() - processor_start)
-
-
-def scene_dict(mi, folder: Path) -> dict:
-    """Mitsuba's description of an exported scene: see fixtures/examples/export_scene.rs."""
-    scene = json.loads((folder / "scene.json").read_text())
-    camera = scene["camera"]
-    view = mi.ScalarTransform4f().look_at(origin=camera["position"], target=camera["target"], up=camera["up"])
-    film = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}, "pixel_format": "rgb"}
-    described = {
-        "type": "scene",
-        "integrator": {"type": "path", "max_depth": -1, "rr_depth": ROULETTE_BEGIN},
-        "sensor": {
-            "type": "perspective",
-            "fov": camera["vfov"],
-            "fov_axis": "y",
-            # The default near plane, 0.01, is in scene units: nothing may be cut off.
-            "near_clip": 1e-4,
-            "far_clip": 1e6,
-            "to_world": view,
-            "film": {**film, "component_format": "float32"},
-            "sampler": {"type": "independent"},
-        },
-    }
-    for index, part in enumerate(scene["parts"]):
-        described[f"part{index}"] = part_dict(folder, part)
-    return described
-
-
-def part_dict(folder: Path, part: dict) -> dict:
-    colour = lambda rgb: {"type": "rgb", "value": rgb}
-    diffuse = {"type": "diffuse", "reflectance": colour(part["albedo"])}
-    mesh = {
-        "type": "ply",
-        "filename": os.fspath(folder / part["file"]),
-        "face_normals": not part["normals"],
-        "bsdf": {"type": "twosided", "nested": diffuse},
-    }
-    if any(part["emission"]):
-        mesh["emitter"] = {"type": "area", "radiance": colour(part["emission"])}
-    return mesh
