@@ -69,9 +69,11 @@ class Agreement:
 
 
 def difference(a: Converged, b: Converged) -> tuple[float, float]:
-    """relMSE of one mean against the other, and its expectation if both estimate the same picture."""
-    noise = (a.variance_of_mean() + b.variance_of_mean()) / (b.mean**2 + FLOOR)
-    return rel_mse(a.mean, b.mean), float(noise.mean())
+    """relMSE between the means, and its expectation if both estimate the same picture. r is the mean of both: with one
+    of them as r, its own noise would make dark pixels darker and their errors greater than expected."""
+    scale = ((a.mean + b.mean) / 2) ** 2 + FLOOR
+    noise = (a.variance_of_mean() + b.variance_of_mean()) / scale
+    return float(np.mean((a.mean - b.mean) ** 2 / scale)), float(noise.mean())
 
 
 def combined(a: Converged, b: Converged) -> tuple[np.ndarray, float]:
