@@ -147,7 +147,10 @@ fn z_test(films: &[Vec<FilmTexel>; 2], params: &TracePathsParams) -> Check {
         // all in it: (1 / 0.0722)² would pass anything, so channels are compared as luminance only.
         let luminance = |c: &[f32; 3]| [0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; 3];
         let mean = mean.iter().map(luminance).collect();
-        let variance = film.variance().iter().map(|v| [*v; 3]).collect();
+        // Squares are summed in quanta fit for the brightest emitter: of a dim sample's square only "at most one quantum"
+        // is known, and that much more variance the mean may have.
+        let quantum = f64::from(-params.moment_exponent).exp2() / f64::from(params.sample_count);
+        let variance = film.variance().iter().map(|v| [(f64::from(*v) + quantum) as f32; 3]).collect();
         let image = |pixels| Image::new(params.width, params.height, pixels).map_err(failed);
         images.push((image(mean)?, image(variance)?));
     }

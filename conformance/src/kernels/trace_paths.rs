@@ -91,9 +91,13 @@ fn check<B: Backend>(cx: &Context<'_, B>, case: &Known) -> Check {
     ensure(error <= POWER, || {
         format!("relative standard error {error} hides biases; the check has no power")
     })?;
-    params.sampler = SAMPLER_SOBOL;
-    let sobol = Mean::of(&traced(cx.backend, &compiled, &params)?, &params)?;
-    for (name, mean) in [("independent", mean), ("Sobol", sobol)] {
+    let mut means = vec![("independent", mean)];
+    // Sobol points on every scene double the time; their bits are compared between backends at every effort.
+    if cx.full() {
+        params.sampler = SAMPLER_SOBOL;
+        means.push(("Sobol", Mean::of(&traced(cx.backend, &compiled, &params)?, &params)?));
+    }
+    for (name, mean) in means {
         for channel in 0..3 {
             let (got, want) = (mean.radiance[channel], case.radiance[channel]);
             let allowed = want * (SIGMAS * error + case.slack);
