@@ -167,9 +167,5 @@ impl<'a> Library<'a> {
                 "{obj}: material '{name}' is transparent without an index of refraction: drawn opaque"
             ));
         }
-        if self.materials.iter().any(|m| m.emits_both_sides) {
-            let what = "emissive faces emit from both sides, since winding can't be relied on in OBJ files";
-            self.notices.push(format!("{obj}: {what}"));
-        }
     }
 }

@@ -11,7 +11,7 @@
 //! - *Glass*: `illum 4, 6, 7, 9`, or transparency (`d` < 1; `Tr` > 0 counts only without `d`, as some exporters write
 //!   `Tr 1` for opaque) with `Ni` > 1. Index `Ni`, 1.5 without a usable one.
 //! - *Energy*: channels where albedo + f0 exceeds 1 are scaled down to 1.
-//! - *Emission*: `Ke`, from both sides, since winding can't be relied on in OBJ files.
+//! - *Emission*: `Ke`, from the front (counter-clockwise) side, as other renderers read it.
 
 use super::mtl::MtlMaterial;
 use twinlight_core::scene::{Material, MaterialKind};
@@ -37,12 +37,8 @@ pub(super) struct Adjustments {
 /// The material an MTL block describes, without its texture.
 pub(super) fn convert(mtl: &MtlMaterial, adjustments: &mut Adjustments) -> Material {
     let albedo = base_color(mtl);
-    let emission = mtl.ke.unwrap_or_default();
-    let mut material = Material {
-        emission,
-        emits_both_sides: emission.iter().any(|&e| e > 0.0),
-        ..Material::diffuse(&mtl.name, albedo)
-    };
+    let mut material =
+        Material { emission: mtl.ke.unwrap_or_default(), ..Material::diffuse(&mtl.name, albedo) };
     if let Some(ior) = glass(mtl, adjustments) {
         material.kind = MaterialKind::Dielectric { ior };
         material.albedo = [0.0; 3];
