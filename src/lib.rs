@@ -49,3 +49,8 @@ pub use twinlight_core::{
     Accuracy, Backend, BackendInfo, Error, Result, accuracy, backend, bvh, error, kernels, math, scene,
     transport,
 };
+
+// README's example, compiled and run with the documentation's.
+#[cfg(all(doctest, feature = "cpu", feature = "io", feature = "methods"))]
+#[doc = include_str!("../README.md")]
+struct Readme;
