@@ -171,6 +171,8 @@ pub struct RenderArgs {
     )]
     pub sampler: SamplerName,
 
+    // The brackets are clap's help text, no link.
+    #[allow(rustdoc::broken_intra_doc_links)]
     /// Camera as "px,py,pz tx,ty,tz [ux,uy,uz] vfov": position, target, up (+Y), vertical field of view in degrees
     #[arg(long, value_name = "CAMERA", allow_hyphen_values = true, help_heading = "Picture")]
     pub camera: Option<CameraArg>,

@@ -5,8 +5,8 @@
 // oracle conformance/src/oracle/trace.rs
 //! Cases and laws of `trace`.
 //!
-//! Two roads to the right answer: the contract's formula without a hierarchy, bit for bit ([`as_written`], strict mode
-//! only), and f64 with derived intervals ([`within`], every mode).
+//! Two roads to the right answer: the contract's formula without a hierarchy, bit for bit (`as_written`, strict mode
+//! only), and f64 with derived intervals (`within`, every mode).
 
 mod hard;
 mod laws;
