@@ -24,6 +24,7 @@ pub mod bvh8;
 mod kernels;
 mod parallel;
 mod processor;
+mod sampler;
 mod scene;
 mod scratch;
 pub mod simd;

@@ -156,7 +156,7 @@ fn twins() -> Vec<Twins> {
 fn with_scene(mut structs: Vec<Layout>) -> Vec<Layout> {
     structs.extend([
         layout!(bvh::BvhNode { min, first, max, count }),
-        layout!(scene::Triangle { p0, id, p1, material, p2, light }),
+        layout!(scene::Triangle { p0, id, p1, material, p2, light, normal, offset }),
         layout!(scene::TriangleAttributes { n0, flags, n1, uv2_v, n2, uv2_u, uv0, uv1 }),
         layout!(scene::MaterialRecord {
             albedo, kind, specular_f0, alpha, emission, flags, specular_f90, ior, smith_k, texture_offset,
@@ -209,8 +209,6 @@ fn with_intersection(mut constants: Constants) -> Constants {
 /// Those, and what `shared/{offset,surface,light}.wgsl` use.
 fn with_lights(mut constants: Constants) -> Constants {
     constants.extend([
-        ("POSITION_ERROR", offset::POSITION_ERROR.into()),
-        ("PLANE_ERROR", offset::PLANE_ERROR.into()),
         ("FAR", light::FAR.into()),
         ("SHADOW_REACH", light::SHADOW_REACH.into()),
         ("PI", transport::PI.into()),

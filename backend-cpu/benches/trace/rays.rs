@@ -73,7 +73,7 @@ impl Kernel for Collect<'_> {
                 let (a, b) = concentric_disc(unit(), unit());
                 let up = (1.0 - a * a - b * b).max(0.0).sqrt();
                 direction = to_world(tangent, bitangent, normal, Vec3::new(a, b, up));
-                origin = offset_origin(surface.position, surface.error, normal, direction);
+                origin = offset_origin(surface.position, surface.offset, normal, direction);
                 rays.bounce.push(ray(origin, direction, FAR));
                 let target = self.lamp + Vec3::new(unit() - 0.5, 0.0, unit() - 0.5) * 0.5;
                 rays.shadow.push(ray(origin, target - origin, 0.999));

@@ -3,7 +3,7 @@
 
 use crate::simd::{LaneMask, Lanes, Width};
 use glam::Vec3;
-use twinlight_core::transport::intersect::{PAD_COORDINATE, PAD_EXTENT, RayFrame, SLAB_FAR_FACTOR};
+use twinlight_core::transport::intersect::{RayFrame, larger, padded_bounds, slab};
 
 /// Triangles per pack.
 pub(super) const PACK: usize = 8;
@@ -21,6 +21,19 @@ pub(super) struct Pack {
 
 impl Pack {
     pub(super) const EMPTY: Pack = Pack { corners: [[[0.0; PACK]; 3]; 3] };
+
+    /// The ray parameter of triangle `lane`, if its padded bounds are met too. One triangle at a time: few get here, and
+    /// nearly all of them are hits.
+    #[inline(always)]
+    pub(super) fn t(&self, lane: usize, frame: &RayFrame, t_edge: f32) -> Option<f32> {
+        let [p0, p1, p2] = [0, 1, 2].map(|vertex| {
+            let [x, y, z] = &self.corners[vertex];
+            Vec3::new(x[lane], y[lane], z[lane])
+        });
+        let (min, max) = padded_bounds(p0, p1, p2);
+        let (near, far) = slab(frame, min, max);
+        (larger(near, 0.0) <= far).then_some(larger(t_edge, near))
+    }
 }
 
 /// What a ray brings to every pack. Axes are permuted.
@@ -29,15 +42,14 @@ pub(super) struct PackRay<W: Width> {
     axes: [usize; 3],
     origin: [PackLanes<W>; 3],
     shear: [PackLanes<W>; 3],
-    inverse: [f32; 3],
     t_min: f32,
 }
 
-/// Lanes of a pack that a ray meets within `t_min < t ≤ t_best`.
+/// Lanes of a pack that a ray may meet: all but condition 2 of the contract, which [`Pack::t`] adds.
 pub(super) struct PackHits<W: Width> {
-    /// Bit i: triangle i is met.
+    /// Bit i: the edges of triangle i let the ray through, and `t_min < t_edge ≤ t_best`.
     pub mask: u32,
-    pub t: PackLanes<W>,
+    pub t_edge: PackLanes<W>,
     /// Edge functions V and W, and the determinant that makes weights of them.
     pub edges: [PackLanes<W>; 2],
     pub determinant: PackLanes<W>,
@@ -59,7 +71,6 @@ impl<W: Width> PackRay<W> {
             axes,
             origin: splat3(width, permuted(frame.origin, axes)),
             shear: splat3(width, frame.shear.to_array()),
-            inverse: permuted(frame.inverse, axes),
             t_min,
         }
     }
@@ -101,57 +112,18 @@ impl<W: Width> PackRay<W> {
         if one_sided.bits() == 0 {
             return None;
         }
+        // Of u, v and w with one sign and not all zero the sum isn't zero; where it is NaN, so is t, which is in no range.
         let determinant = (u + v) + w;
         let t_edge = ((u * (sz * a[2]) + v * (sz * b[2])) + w * (sz * c[2])) / determinant;
-        let (near, far) = self.padded_slab(width, pack);
-        let t = t_edge.maximum(near);
-        let mask = one_sided
-            & (determinant.lt(zero) | zero.lt(determinant))
-            & near.maximum(zero).le(far)
-            & PackLanes::<W>::splat(width, self.t_min).lt(t)
-            & t.le(PackLanes::<W>::splat(width, t_best));
-        Some(PackHits { mask: mask.bits(), t, edges: [v, w], determinant })
-    }
-
-    /// Entry and exit of every triangle's padded bounds: `padded_bounds` and `slab` of the contract. The exit's factor
-    /// is applied to negative exits too, which makes them no less negative.
-    #[inline(always)]
-    fn padded_slab(&self, width: W, pack: &Pack) -> (PackLanes<W>, PackLanes<W>) {
-        let zero = PackLanes::<W>::splat(width, 0.0);
-        let p0 = self.corner(width, pack, 0);
-        let p1 = self.corner(width, pack, 1);
-        let p2 = self.corner(width, pack, 2);
-        let min = minimum3::<W>(minimum3::<W>(p0, p1), p2);
-        let max = maximum3::<W>(maximum3::<W>(p0, p1), p2);
-        let extent = (max[0] - min[0]).maximum(max[1] - min[1]).maximum(max[2] - min[2]);
-        // max(|min|, |max|) per axis, as min ≤ max.
-        let reach = maximum3::<W>([zero - min[0], zero - min[1], zero - min[2]], max);
-        let coordinate = reach[0].maximum(reach[1]).maximum(reach[2]);
-        let pad = extent * PackLanes::<W>::splat(width, PAD_EXTENT)
-            + coordinate * PackLanes::<W>::splat(width, PAD_COORDINATE);
-        let [ix, iy, iz] = splat3(width, self.inverse);
-        let low = self.relative([min[0] - pad, min[1] - pad, min[2] - pad]);
-        let high = self.relative([max[0] + pad, max[1] + pad, max[2] + pad]);
-        let a = [low[0] * ix, low[1] * iy, low[2] * iz];
-        let b = [high[0] * ix, high[1] * iy, high[2] * iz];
-        let (enter, leave) = (minimum3::<W>(a, b), maximum3::<W>(a, b));
-        let near = enter[0].maximum(enter[1]).maximum(enter[2]);
-        let far = leave[0].minimum(leave[1]).minimum(leave[2]);
-        (near, far * PackLanes::<W>::splat(width, SLAB_FAR_FACTOR))
+        let in_range = PackLanes::<W>::splat(width, self.t_min).lt(t_edge)
+            & t_edge.le(PackLanes::<W>::splat(width, t_best));
+        Some(PackHits { mask: (one_sided & in_range).bits(), t_edge, edges: [v, w], determinant })
     }
 }
 
 #[inline(always)]
 fn permuted(v: Vec3, axes: [usize; 3]) -> [f32; 3] {
-    [v[axes[0]], v[axes[1]], v[axes[2]]]
-}
-
-#[inline(always)]
-fn minimum3<W: Width>(a: Lanes3<W>, b: Lanes3<W>) -> Lanes3<W> {
-    [a[0].minimum(b[0]), a[1].minimum(b[1]), a[2].minimum(b[2])]
-}
-
-#[inline(always)]
-fn maximum3<W: Width>(a: Lanes3<W>, b: Lanes3<W>) -> Lanes3<W> {
-    [a[0].maximum(b[0]), a[1].maximum(b[1]), a[2].maximum(b[2])]
+    // glam's own indexing branches on axes that can't be predicted.
+    let components = [v.x, v.y, v.z, 0.0];
+    [components[axes[0] & 3], components[axes[1] & 3], components[axes[2] & 3]]
 }

@@ -6,7 +6,7 @@ use super::{MAX_STACK, NO_SLOT, Node, Pack, SlotHit, Visits, WideBvh};
 use crate::simd::{Lanes, Portable, Width};
 use glam::Vec3;
 use std::mem::MaybeUninit;
-use twinlight_core::transport::intersect::ray_frame;
+use twinlight_core::transport::intersect::{RayFrame, ray_frame};
 
 /// Children still to visit: the entry parameter's bits above, the reference below. Entries are not negative, so the
 /// order of the integers is the order of the entries.
@@ -138,7 +138,7 @@ impl WideBvh {
                 count(false);
                 let (index, pack) = self.pack(current);
                 if let Some(hits) = pack_ray.meet(width, pack, best.t) {
-                    self.improve(&mut best, index, &hits);
+                    self.improve(&mut best, &frame, index, pack, &hits);
                 }
             }
             current = loop {
@@ -176,7 +176,7 @@ impl WideBvh {
             while packs != 0 {
                 let (_, pack) = self.pack(take_child(node, &mut packs));
                 if let Some(hits) = pack_ray.meet(width, pack, t_max)
-                    && hits.mask != 0
+                    && any_within(&frame, pack, &hits, t_max)
                 {
                     return true;
                 }
@@ -191,19 +191,26 @@ impl WideBvh {
 
     /// Takes over what is nearer, or as near with a lower id.
     #[inline(always)]
-    fn improve<W: Width>(&self, best: &mut Best, pack: u32, hits: &PackHits<W>) {
+    fn improve<W: Width>(
+        &self,
+        best: &mut Best,
+        frame: &RayFrame,
+        index: u32,
+        pack: &Pack,
+        hits: &PackHits<W>,
+    ) {
         let mut mask = hits.mask;
         if mask == 0 {
             return;
         }
-        let ts = hits.t.to_array();
+        let ts = hits.t_edge.to_array();
         let (vs, ws) = (hits.edges[0].to_array(), hits.edges[1].to_array());
         let determinants = hits.determinant.to_array();
         while mask != 0 {
             let i = mask.trailing_zeros() as usize & (PACK - 1);
             mask &= mask - 1;
-            let lane = pack * PACK as u32 + i as u32;
-            let t = ts[i];
+            let lane = index * PACK as u32 + i as u32;
+            let Some(t) = pack.t(i, frame, ts[i]) else { continue };
             let tie = t == best.t && (best.lane == NO_SLOT || self.id(lane) < self.id(best.lane));
             if t < best.t || tie {
                 *best = Best { t, v: vs[i], w: ws[i], determinant: determinants[i], lane };
@@ -235,6 +242,24 @@ impl WideBvh {
         });
         visits
     }
+}
+
+/// Whether any of the triangles that a ray may meet is met at or before `t_max`.
+#[inline(always)]
+fn any_within<W: Width>(frame: &RayFrame, pack: &Pack, hits: &PackHits<W>, t_max: f32) -> bool {
+    let mut mask = hits.mask;
+    if mask == 0 {
+        return false;
+    }
+    let ts = hits.t_edge.to_array();
+    while mask != 0 {
+        let i = mask.trailing_zeros() as usize & (PACK - 1);
+        mask &= mask - 1;
+        if pack.t(i, frame, ts[i]).is_some_and(|t| t <= t_max) {
+            return true;
+        }
+    }
+    false
 }
 
 /// The met child that the ray enters first; the others go on the stack, the farthest lowest.

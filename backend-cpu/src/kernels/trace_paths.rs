@@ -5,17 +5,15 @@
 // oracle conformance/src/oracle/trace_paths.rs
 //! Rust twin of `trace_paths`: one path after another, so that a pixel's rays stay in cache.
 
+use crate::sampler::{Sampler, VertexNumbers};
 use crate::scene::SceneData;
 use crate::simd::{Isa, Kernel, Width, dispatch};
-use crate::tracer::{Tracer, WideTracer};
+use crate::tracer::WideTracer;
 use glam::Vec3;
 use rayon::prelude::*;
-use twinlight_core::kernels::trace_paths::{
-    FilmTexel, MAX_SURVIVAL, PAIRS_PER_VERTEX, SAMPLER_SOBOL, TracePathsParams,
-};
+use twinlight_core::kernels::trace_paths::{FilmTexel, MAX_SURVIVAL, TracePathsParams};
 use twinlight_core::math::fixed::{OUT_OF_RANGE, Words, add_saturating, from_float};
-use twinlight_core::math::hash::{mix_pair, to_unit};
-use twinlight_core::math::sobol::{independent_pair, sobol_pair};
+use twinlight_core::math::hash::mix_pair;
 use twinlight_core::math::vector::{basis, to_world};
 use twinlight_core::scene::{
     EMITS_BOTH_SIDES, MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_OPAQUE, MaterialRecord, NONE,
@@ -53,24 +51,6 @@ struct Path {
     light: PathLight,
 }
 
-/// What the samples of a pixel share.
-struct Sampler {
-    kind: u32,
-    stream: u32,
-    sample: u32,
-}
-
-impl Sampler {
-    #[inline(always)]
-    fn pair(&self, pair: u32) -> [u32; 2] {
-        if self.kind == SAMPLER_SOBOL {
-            sobol_pair(self.stream, self.sample, pair)
-        } else {
-            independent_pair(self.stream, self.sample, pair)
-        }
-    }
-}
-
 /// Pixels per task: enough to hide the cost of a task, few enough to balance rows of uneven depth.
 const TASK_PIXELS: usize = 64;
 
@@ -104,8 +84,8 @@ impl Kernel for Task<'_> {
 
 /// Adds the samples of `params` for the pixels from `first_pixel` on to `film`, one texel per pixel.
 #[inline(always)]
-fn trace_pixels<T: Tracer>(
-    tracer: &T,
+fn trace_pixels<W: Width>(
+    tracer: &WideTracer<'_, W>,
     scene: &SceneView<'_>,
     params: &TracePathsParams,
     first_pixel: u32,
@@ -113,8 +93,9 @@ fn trace_pixels<T: Tracer>(
 ) {
     for (i, texel) in film.iter_mut().enumerate() {
         let pixel = first_pixel + i as u32;
+        let stream = mix_pair(params.seed, pixel);
         for sample in params.sample_begin..params.sample_begin + params.sample_count {
-            let sampler = Sampler { kind: params.sampler, stream: mix_pair(params.seed, pixel), sample };
+            let sampler = Sampler { kind: params.sampler, stream, sample };
             let light = trace_path(tracer, scene, params, pixel, &sampler);
             add_sample(texel, light, params);
         }
@@ -123,17 +104,18 @@ fn trace_pixels<T: Tracer>(
 
 /// One path from the camera.
 #[inline(always)]
-fn trace_path<T: Tracer>(
-    tracer: &T,
+fn trace_path<W: Width>(
+    tracer: &WideTracer<'_, W>,
     scene: &SceneView<'_>,
     params: &TracePathsParams,
     pixel: u32,
     sampler: &Sampler,
 ) -> PathLight {
     // [1] sample: a point of the pixel
-    let [jx, jy] = sampler.pair(0);
-    let x = (pixel % params.width) as f32 + to_unit(jx);
-    let y = (pixel / params.width) as f32 + to_unit(jy);
+    // Pair 0; the others that come with it cost nothing.
+    let [jx, jy] = sampler.vertex(tracer.1, 0).direction;
+    let x = (pixel % params.width) as f32 + jx;
+    let y = (pixel / params.width) as f32 + jy;
     let mut path = Path {
         origin: Vec3::from(params.camera.position),
         direction: camera_direction(&params.camera, x, y),
@@ -162,7 +144,8 @@ fn trace_path<T: Tracer>(
         if path.vertices == params.max_bounces {
             return path.light;
         }
-        let base = 1 + path.vertices * PAIRS_PER_VERTEX;
+        let base = Sampler::first_pair(path.vertices);
+        let numbers = sampler.vertex(tracer.1, base);
         let (tangent, bitangent) = basis(surface.shading_normal);
         let to_viewer = -path.direction;
         let wo = Vec3::new(
@@ -170,37 +153,26 @@ fn trace_path<T: Tracer>(
             to_viewer.dot(bitangent),
             to_viewer.dot(surface.shading_normal),
         );
-        // Not drawn where there is nothing to choose between.
-        let mut choice = [0, 0];
-        if scene.environment.light_count > 1
-            || material.specular_f90 > 0.0
-            || material.kind != MATERIAL_OPAQUE
-        {
-            choice = sampler.pair(base + 2);
-        }
+        // [4] scatter, worked out before [3] sends its ray: the processor overlaps the two.
+        let scattered = scatter(material, &surface, wo, &numbers);
+        let direction = to_world(tangent, bitangent, surface.shading_normal, scattered.direction);
+        let leaves = direction.dot(surface.geometric_normal);
+        let origin = offset_origin(surface.position, surface.offset, surface.geometric_normal, direction);
         // [3] direct light
         if material.kind == MATERIAL_OPAQUE && scene.environment.light_count > 0 {
             let frame = (tangent, bitangent, surface.shading_normal);
-            add_direct_light(&mut path, tracer, scene, &surface, frame, wo, sampler, base, choice[0]);
+            add_direct_light(&mut path, tracer, scene, &surface, frame, wo, sampler, base, &numbers);
         }
-        // [4] scatter
-        let [u, v] = sampler.pair(base);
-        let scattered = scatter(material, &surface, wo, to_unit(choice[1]), to_unit(u), to_unit(v));
-        if scattered.direction == Vec3::ZERO {
+        if scattered.direction == Vec3::ZERO || (material.kind != MATERIAL_DIELECTRIC && !(leaves > 0.0)) {
             return path.light;
         }
-        let direction = to_world(tangent, bitangent, surface.shading_normal, scattered.direction);
-        let leaves = direction.dot(surface.geometric_normal);
-        if material.kind != MATERIAL_DIELECTRIC && !(leaves > 0.0) {
-            return path.light;
-        }
-        path.origin = offset_origin(surface.position, surface.error, surface.geometric_normal, direction);
+        path.origin = origin;
         path.direction = direction;
         path.throughput *= scattered.weight;
         path.pdf = scattered.pdf;
         path.vertices += 1;
         // [5] roulette
-        if !survives(&mut path, params, sampler, base + 4) {
+        if !survives(&mut path, params, numbers.roulette) {
             return path.light;
         }
     }
@@ -273,24 +245,24 @@ fn add_surface_emission(
 
 /// One light, one point on it, one shadow ray.
 #[inline(always)]
-fn add_direct_light<T: Tracer>(
+fn add_direct_light<W: Width>(
     path: &mut Path,
-    tracer: &T,
+    tracer: &WideTracer<'_, W>,
     scene: &SceneView<'_>,
     surface: &Surface,
     frame: (Vec3, Vec3, Vec3),
     wo: Vec3,
     sampler: &Sampler,
     base: u32,
-    choose_light: u32,
+    numbers: &VertexNumbers,
 ) {
-    let index = select_light(scene, choose_light);
+    let index = select_light(scene, numbers.light_choice);
     let mut texel = [0, 0];
     if index == scene.environment.light {
         texel = sampler.pair(base + 3);
     }
-    let [u, v] = sampler.pair(base + 1);
-    let light = sample_light(scene, index, surface.position, to_unit(u), to_unit(v), texel);
+    let [u, v] = numbers.light_point;
+    let light = sample_light(scene, index, surface.position, u, v, texel);
     if !(light.pdf > 0.0) || !(light.direction.dot(surface.geometric_normal) > 0.0) {
         return;
     }
@@ -302,7 +274,7 @@ fn add_direct_light<T: Tracer>(
     if !(unshadowed.x > 0.0 || unshadowed.y > 0.0 || unshadowed.z > 0.0) {
         return;
     }
-    let origin = offset_origin(surface.position, surface.error, surface.geometric_normal, light.direction);
+    let origin = offset_origin(surface.position, surface.offset, surface.geometric_normal, light.direction);
     let mut direction = light.direction;
     let mut reach = FAR;
     if !light.infinite {
@@ -323,19 +295,20 @@ fn add_direct_light<T: Tracer>(
 }
 
 #[inline(always)]
-fn scatter(material: &MaterialRecord, surface: &Surface, wo: Vec3, lobe: f32, u: f32, v: f32) -> BsdfSample {
+fn scatter(material: &MaterialRecord, surface: &Surface, wo: Vec3, numbers: &VertexNumbers) -> BsdfSample {
     if material.kind == MATERIAL_MIRROR {
         return sample_mirror(material, wo);
     }
     if material.kind == MATERIAL_DIELECTRIC {
-        return sample_dielectric(material, surface.front, wo, lobe);
+        return sample_dielectric(material, surface.front, wo, numbers.lobe);
     }
-    sample_opaque(material, surface.albedo, wo, lobe, u, v)
+    let [u, v] = numbers.direction;
+    sample_opaque(material, surface.albedo, wo, numbers.lobe, u, v)
 }
 
 /// Whether the path goes on; dims its throughput by the survival probability.
 #[inline(always)]
-fn survives(path: &mut Path, params: &TracePathsParams, sampler: &Sampler, pair: u32) -> bool {
+fn survives(path: &mut Path, params: &TracePathsParams, number: f32) -> bool {
     let t = path.throughput;
     let xy = if t.x > t.y { t.x } else { t.y };
     let largest = if xy > t.z { xy } else { t.z };
@@ -346,7 +319,7 @@ fn survives(path: &mut Path, params: &TracePathsParams, sampler: &Sampler, pair:
         return true;
     }
     let survival = if largest < MAX_SURVIVAL { largest } else { MAX_SURVIVAL };
-    if !(to_unit(sampler.pair(pair)[0]) < survival) {
+    if !(number < survival) {
         return false;
     }
     let inverse = 1.0 / survival;

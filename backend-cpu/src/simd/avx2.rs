@@ -1,5 +1,6 @@
 //! Eight lanes in an AVX register.
 
+use super::avx2_words::U8;
 use super::sse2::F4;
 use super::{Kernel, LaneMask, Lanes, Width};
 use std::arch::x86_64::{
@@ -41,6 +42,7 @@ pub(super) fn run<K: Kernel>(width: Avx2, kernel: K) -> K::Output {
 impl Width for Avx2 {
     type F4 = F4<Avx2>;
     type F8 = F8;
+    type U8 = U8;
 }
 
 /// Eight lanes. Only made from an [`Avx2`], or from other lanes.

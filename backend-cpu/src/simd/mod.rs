@@ -7,10 +7,13 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx2_words;
 mod pair;
 mod portable;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
+mod words;
 
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Avx2;
@@ -53,12 +56,40 @@ pub trait Lanes:
     fn le(self, other: Self) -> Self::Mask;
 }
 
+/// A vector of eight `u32`; sums and products wrap.
+pub trait Words:
+    Copy + Add<Output = Self> + Mul<Output = Self> + BitAnd<Output = Self> + BitXor<Output = Self>
+{
+    /// Proof that the instructions exist.
+    type Token: Copy;
+
+    /// The same value in every lane.
+    fn splat(token: Self::Token, value: u32) -> Self;
+    /// Lanes from memory.
+    fn load(token: Self::Token, from: &[u32; 8]) -> Self;
+    /// Lanes to memory.
+    fn to_array(self) -> [u32; 8];
+    /// Every lane shifted to the right.
+    #[must_use]
+    fn shift_right<const BITS: i32>(self) -> Self;
+    /// Every lane with its bits in reverse order.
+    #[must_use]
+    fn reverse_bits(self) -> Self;
+    /// Lanes 0 to 3 of `self`, 4 to 7 of `upper`.
+    #[must_use]
+    fn lower_then_upper(self, upper: Self) -> Self;
+    /// [`twinlight_core::math::hash::to_unit`] of every lane.
+    fn to_units(self) -> [f32; 8];
+}
+
 /// An instruction set.
 pub trait Width: Copy + Send + Sync {
     /// Four lanes.
     type F4: Lanes<Token = Self, Array = [f32; 4]>;
     /// Eight lanes.
     type F8: Lanes<Token = Self, Array = [f32; 8]>;
+    /// Eight words.
+    type U8: Words<Token = Self>;
 }
 
 /// Instruction sets that can be asked for by name.

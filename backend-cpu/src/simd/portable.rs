@@ -1,6 +1,6 @@
 //! Lanes as arrays.
 
-use super::{LaneMask, Lanes, Width};
+use super::{LaneMask, Lanes, Width, words};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
 
 /// Token of the portable width.
@@ -10,6 +10,7 @@ pub struct Portable;
 impl Width for Portable {
     type F4 = Array<4>;
     type F8 = Array<8>;
+    type U8 = words::Array<Portable>;
 }
 
 /// N lanes.

@@ -1,7 +1,7 @@
 //! Four lanes in an SSE register. Every x86-64 processor has SSE2, so the token needs no proof.
 
 use super::pair::Pair;
-use super::{LaneMask, Lanes, Width};
+use super::{LaneMask, Lanes, Width, words};
 use std::arch::x86_64::{
     __m128, _mm_add_ps, _mm_and_ps, _mm_cmple_ps, _mm_cmplt_ps, _mm_div_ps, _mm_loadu_ps, _mm_max_ps,
     _mm_min_ps, _mm_movemask_ps, _mm_mul_ps, _mm_or_ps, _mm_set1_ps, _mm_storeu_ps, _mm_sub_ps, _mm_xor_ps,
@@ -16,6 +16,7 @@ pub struct Sse2;
 impl Width for Sse2 {
     type F4 = F4<Sse2>;
     type F8 = Pair<F4<Sse2>>;
+    type U8 = words::Array<Sse2>;
 }
 
 /// Four lanes; `W` is the token of the width it serves, so that AVX2 code can use it too.

@@ -186,7 +186,7 @@ fn advance(path: ptr<function, PathState>, draws: Draws) -> bool {
     if material.kind != MATERIAL_DIELECTRIC && !(leaves > 0.0f) {
         return false;
     }
-    (*path).origin = offset_origin(surface.position, surface.error, surface.geometric_normal, direction);
+    (*path).origin = offset_origin(surface.position, surface.offset, surface.geometric_normal, direction);
     (*path).direction = direction;
     (*path).throughput *= scattered.weight;
     (*path).pdf = scattered.pdf;
@@ -281,7 +281,7 @@ fn add_direct_light(
         return;
     }
     let origin =
-        offset_origin(surface.position, surface.error, surface.geometric_normal, light.direction);
+        offset_origin(surface.position, surface.offset, surface.geometric_normal, light.direction);
     var direction = light.direction;
     var reach = FAR;
     if !light.infinite {

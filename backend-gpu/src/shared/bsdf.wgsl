@@ -82,6 +82,13 @@ fn sample_opaque(
     u: f32,
     v: f32,
 ) -> BsdfSample {
+    if material.specular_f90 == 0.0f {
+        let diffuse = cosine_hemisphere(u, v);
+        if wo.z > 0.0f && diffuse.z > 0.0f {
+            return BsdfSample(diffuse, albedo, diffuse.z * INV_PI);
+        }
+        return BsdfSample(vec3<f32>(0.0f), vec3<f32>(0.0f), 0.0f);
+    }
     let specular = lobe < specular_probability(material, albedo, wo.z);
     var wi: vec3<f32>;
     if specular {

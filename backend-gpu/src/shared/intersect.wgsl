@@ -131,6 +131,9 @@ fn triangle(
     let bz = frame.shear.z * b[kz];
     let cz = frame.shear.z * c[kz];
     let t_edge = ((u * az + v * bz) + w * cz) / determinant;
+    if !(t_edge > t_min) {
+        return miss;
+    }
     let bounds = padded_bounds(p0, p1, p2);
     let range = slab(frame, bounds.low, bounds.high);
     let near = range.x;
@@ -138,7 +141,7 @@ fn triangle(
         return miss;
     }
     let t = larger(t_edge, near);
-    if t > t_min && t <= t_max {
+    if t <= t_max {
         return TriangleHit(true, t, v / determinant, w / determinant);
     }
     return miss;

@@ -90,19 +90,15 @@ fn no_light(light: u32) -> LightSample {
 
 fn sample_triangle(index: u32, receiver: vec3<f32>, u: f32, v: f32) -> LightSample {
     let light = lights[index];
-    let p0 = triangles[light.triangle].p0;
-    let p1 = triangles[light.triangle].p1;
-    let p2 = triangles[light.triangle].p2;
     // Heitz 2019: a low-distortion map from the square to the triangle.
     let lower = v > u;
     let halved = select(v, u, lower) * 0.5f;
     let b0 = select(u - halved, halved, lower);
     let b1 = select(halved, v - halved, lower);
-    let a = p0 * ((1.0f - b0) - b1);
-    let b = p1 * b0;
-    let c = p2 * b1;
+    let a = triangles[light.triangle].p0 * ((1.0f - b0) - b1);
+    let b = triangles[light.triangle].p1 * b0;
+    let c = triangles[light.triangle].p2 * b1;
     let point = (a + b) + c;
-    let error = triangle_error(p0, p1, p2, a, b, c);
     let to_light = point - receiver;
     let squared = dot_product(to_light, to_light);
     let direction = normalized(to_light);
@@ -115,7 +111,7 @@ fn sample_triangle(index: u32, receiver: vec3<f32>, u: f32, v: f32) -> LightSamp
     }
     return LightSample(
         direction,
-        offset_origin(point, error, normal, -direction),
+        offset_origin(point, triangles[light.triangle].offset, normal, -direction),
         light.emission,
         light.select_pdf * (squared / (light.area * cosine)),
         false,

@@ -31,6 +31,8 @@ struct Triangle {
     material: u32,
     p2: vec3<f32>,
     light: u32,
+    normal: vec3<f32>,
+    offset: f32,
 }
 
 struct TriangleAttributes {

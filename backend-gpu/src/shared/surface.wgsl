@@ -15,7 +15,7 @@ struct CameraRecord {
 
 struct Surface {
     position: vec3<f32>,
-    error: vec3<f32>,
+    offset: f32,
     geometric_normal: vec3<f32>,
     shading_normal: vec3<f32>,
     albedo: vec3<f32>,
@@ -33,18 +33,13 @@ fn surface_at(slot: u32, u: f32, v: f32, direction: vec3<f32>) -> Surface {
     let record = triangles[slot];
     let record_attributes = attributes[slot];
     let material = materials[record.material];
-    let p0 = record.p0;
-    let p1 = record.p1;
-    let p2 = record.p2;
     let w = (1.0f - u) - v;
-    let a = p0 * w;
-    let b = p1 * u;
-    let c = p2 * v;
+    let a = record.p0 * w;
+    let b = record.p1 * u;
+    let c = record.p2 * v;
     let position = (a + b) + c;
-    let error = triangle_error(p0, p1, p2, a, b, c);
-    let winding = normalized_any(cross_product(p1 - p0, p2 - p0));
-    let front = dot_product(winding, direction) < 0.0f;
-    let geometric_normal = select(-winding, winding, front);
+    let front = dot_product(record.normal, direction) < 0.0f;
+    let geometric_normal = select(-record.normal, record.normal, front);
     var shading_normal = geometric_normal;
     if (record_attributes.flags & HAS_NORMALS) != 0u {
         let unit = normalized((record_attributes.n0 * w + record_attributes.n1 * u) + record_attributes.n2 * v);
@@ -60,6 +55,6 @@ fn surface_at(slot: u32, u: f32, v: f32, direction: vec3<f32>) -> Surface {
         albedo *= sample_texture(material, s, t);
     }
     return Surface(
-        position, error, geometric_normal, shading_normal, albedo, record.material, record.light, front,
+        position, record.offset, geometric_normal, shading_normal, albedo, record.material, record.light, front,
     );
 }

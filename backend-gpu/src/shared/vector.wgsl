@@ -16,19 +16,7 @@ fn normalized(v: vec3<f32>) -> vec3<f32> {
     if !(squared > 0.0f) {
         return vec3<f32>(0.0f);
     }
-    let norm = sqrt(squared);
-    return vec3<f32>(v.x / norm, v.y / norm, v.z / norm);
-}
-
-// v / |v| for vectors of any length; 0 for 0.
-fn normalized_any(v: vec3<f32>) -> vec3<f32> {
-    let a = abs(v);
-    let xy = select(a.y, a.x, a.x > a.y);
-    let largest = select(a.z, xy, xy > a.z);
-    if !(largest > 1e-35f) {
-        return vec3<f32>(0.0f);
-    }
-    return normalized(vec3<f32>(v.x / largest, v.y / largest, v.z / largest));
+    return v * (1.0f / sqrt(squared));
 }
 
 struct Basis {

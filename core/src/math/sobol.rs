@@ -30,16 +30,23 @@ pub fn second_dimension_reversed(index: u32) -> u32 {
     x ^ ((x >> 1) & 0x5555_5555)
 }
 
+/// Distance of the seeds of neighbouring pairs before mixing: 2³² over the golden ratio.
+pub const PAIR_STEP: u32 = 0x9e37_79b9;
+/// Makes the scrambling seed of a pair's first number of the pair's seed. The three seeds are one mixed word times odd
+/// constants: equally distributed, and far apart in every bit but the lowest few, which the shifted copy in the
+/// scrambling ignores.
+pub const FIRST_SEED: u32 = 0xc2b2_ae35;
+/// As [`FIRST_SEED`], of the second number.
+pub const SECOND_SEED: u32 = 0x27d4_eb2f;
+
 /// Pair number `pair` of point `sample`, of the sequence that belongs to `stream`; 32 random bits each.
 #[inline(always)]
 pub fn sobol_pair(stream: u32, sample: u32, pair: u32) -> [u32; 2] {
-    let seed = mix(stream.wrapping_add(pair.wrapping_mul(0x9e37_79b9)));
+    let seed = mix(stream.wrapping_add(pair.wrapping_mul(PAIR_STEP)));
     let shuffled = scramble_reversed(sample.reverse_bits(), seed).reverse_bits();
-    // The three seeds are one mixed word times odd constants: equally distributed, and far apart in every bit but the
-    // lowest few, which the shifted copy in the scrambling ignores.
-    let first = scramble_reversed(shuffled, seed.wrapping_mul(0xc2b2_ae35)).reverse_bits();
+    let first = scramble_reversed(shuffled, seed.wrapping_mul(FIRST_SEED)).reverse_bits();
     let second = second_dimension_reversed(shuffled);
-    [first, scramble_reversed(second, seed.wrapping_mul(0x27d4_eb2f)).reverse_bits()]
+    [first, scramble_reversed(second, seed.wrapping_mul(SECOND_SEED)).reverse_bits()]
 }
 
 /// As [`sobol_pair`], but independent from sample to sample.

@@ -192,8 +192,7 @@ impl Flat {
     }
 
     fn triangle(&self, i: usize) -> Triangle {
-        let [p0, p1, p2] = self.corners[i];
-        Triangle { p0, id: self.ids[i], p1, material: self.materials[i], p2, light: NONE }
+        Triangle::new(self.corners[i], self.ids[i], self.materials[i])
     }
 
     fn notices(&self) -> Vec<String> {

@@ -105,6 +105,13 @@ pub fn sample_opaque(
     u: f32,
     v: f32,
 ) -> BsdfSample {
+    if material.specular_f90 == 0.0 {
+        let diffuse = cosine_hemisphere(u, v);
+        let above = wo.z > 0.0 && diffuse.z > 0.0;
+        // f·cos/pdf is ρ: no rounding, no division.
+        let sample = BsdfSample { direction: diffuse, weight: albedo, pdf: diffuse.z * INV_PI };
+        return if above { sample } else { NOTHING };
+    }
     let specular = lobe < specular_probability(material, albedo, wo.z);
     let wi = if specular { reflect_visible(material.alpha, wo, u, v) } else { cosine_hemisphere(u, v) };
     let value = evaluate(material, albedo, wo, wi);

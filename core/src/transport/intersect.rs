@@ -52,12 +52,15 @@ pub fn ray_frame(origin: Vec3, direction: Vec3) -> RayFrame {
     }
     let mut kx = if kz == 2 { 0 } else { kz + 1 };
     let mut ky = if kx == 2 { 0 } else { kx + 1 };
-    let dominant = direction[kz as usize];
+    // A masked index of four numbers: glam's own indexing branches, and which axis dominates can't be predicted.
+    let components = [direction.x, direction.y, direction.z, 0.0];
+    let dominant = components[kz as usize & 3];
     if dominant < 0.0 {
         (kx, ky) = (ky, kx);
     }
     let scale = 1.0 / dominant;
-    let shear = Vec3::new(direction[kx as usize] / dominant, direction[ky as usize] / dominant, scale);
+    let shear =
+        Vec3::new(components[kx as usize & 3] / dominant, components[ky as usize & 3] / dominant, scale);
     let inverse =
         Vec3::new(safe_reciprocal(direction.x), safe_reciprocal(direction.y), safe_reciprocal(direction.z));
     RayFrame { origin, inverse, axes: [kx, ky, kz], shear }
@@ -123,7 +126,7 @@ pub struct TriangleHit {
     pub v: f32,
 }
 
-/// Conditions 1 to 3 of [`crate::kernels::trace`] for `t_min < t ≤ t_max`.
+/// Conditions 1 to 3 of [`crate::kernels::trace`].
 #[inline(always)]
 pub fn triangle(
     frame: &RayFrame,
@@ -158,17 +161,16 @@ pub fn triangle(
     let bz = frame.shear.z * b[kz];
     let cz = frame.shear.z * c[kz];
     let t_edge = ((u * az + v * bz) + w * cz) / determinant;
+    if !(t_edge > t_min) {
+        return None;
+    }
     let (min, max) = padded_bounds(p0, p1, p2);
     let (near, far) = slab(frame, min, max);
     if !(larger(near, 0.0) <= far) {
         return None;
     }
     let t = larger(t_edge, near);
-    if t > t_min && t <= t_max {
-        Some(TriangleHit { t, u: v / determinant, v: w / determinant })
-    } else {
-        None
-    }
+    if t <= t_max { Some(TriangleHit { t, u: v / determinant, v: w / determinant }) } else { None }
 }
 
 /// Entry and exit of a ray (direction of any length) and a sphere, or `None`. The discriminant is formed from the

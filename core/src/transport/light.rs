@@ -3,7 +3,7 @@
 
 use super::environment::sample_environment;
 use super::intersect::sphere;
-use super::offset::{offset_origin, triangle_error};
+use super::offset::offset_origin;
 use super::{PI, SceneView};
 use crate::math::hash::to_index;
 use crate::math::trig::sin_cos_turns;
@@ -137,19 +137,15 @@ fn nothing(light: u32) -> LightSample {
 fn sample_triangle(scene: &SceneView<'_>, index: u32, from: Vec3, u: f32, v: f32) -> LightSample {
     let light = &scene.lights[index as usize];
     let triangle = &scene.triangles[light.triangle as usize];
-    let p0 = Vec3::from(triangle.p0);
-    let p1 = Vec3::from(triangle.p1);
-    let p2 = Vec3::from(triangle.p2);
     // Heitz 2019: a low-distortion map from the square to the triangle.
     let lower = v > u;
     let half = (if lower { u } else { v }) * 0.5;
     let b0 = if lower { half } else { u - half };
     let b1 = if lower { v - half } else { half };
-    let a = p0 * ((1.0 - b0) - b1);
-    let b = p1 * b0;
-    let c = p2 * b1;
+    let a = Vec3::from(triangle.p0) * ((1.0 - b0) - b1);
+    let b = Vec3::from(triangle.p1) * b0;
+    let c = Vec3::from(triangle.p2) * b1;
     let point = (a + b) + c;
-    let error = triangle_error(p0, p1, p2, a, b, c);
     let to_light = point - from;
     let squared = to_light.dot(to_light);
     let direction = normalized(to_light);
@@ -162,7 +158,7 @@ fn sample_triangle(scene: &SceneView<'_>, index: u32, from: Vec3, u: f32, v: f32
     }
     LightSample {
         direction,
-        target: offset_origin(point, error, normal, -direction),
+        target: offset_origin(point, triangle.offset, normal, -direction),
         emission: Vec3::from(light.emission),
         pdf: light.select_pdf * (squared / (light.area * cosine)),
         infinite: false,

@@ -1,10 +1,9 @@
 //! From a hit to what is shaded. Twin: `backend-gpu/src/shared/surface.wgsl`.
 
 use super::SceneView;
-use super::offset::triangle_error;
 use super::texture::sample_texture;
 use crate::kernels::trace_paths::CameraRecord;
-use crate::math::vector::{normalized, normalized_any};
+use crate::math::vector::normalized;
 use crate::scene::{HAS_NORMALS, HAS_TEXCOORDS, NONE};
 use glam::Vec3;
 
@@ -13,8 +12,8 @@ use glam::Vec3;
 pub struct Surface {
     /// The point.
     pub position: Vec3,
-    /// Bound of the point's absolute error, per axis.
-    pub error: Vec3,
+    /// How far along the normal rays start off the surface.
+    pub offset: f32,
     /// Unit normal of the triangle.
     pub geometric_normal: Vec3,
     /// Unit interpolated normal, or the geometric one where that has the viewer behind it.
@@ -42,16 +41,12 @@ pub fn surface_at(scene: &SceneView<'_>, slot: u32, u: f32, v: f32, direction: V
     let triangle = &scene.triangles[slot as usize];
     let attributes = &scene.attributes[slot as usize];
     let material = &scene.materials[triangle.material as usize];
-    let p0 = Vec3::from(triangle.p0);
-    let p1 = Vec3::from(triangle.p1);
-    let p2 = Vec3::from(triangle.p2);
     let w = (1.0 - u) - v;
-    let a = p0 * w;
-    let b = p1 * u;
-    let c = p2 * v;
+    let a = Vec3::from(triangle.p0) * w;
+    let b = Vec3::from(triangle.p1) * u;
+    let c = Vec3::from(triangle.p2) * v;
     let position = (a + b) + c;
-    let error = triangle_error(p0, p1, p2, a, b, c);
-    let winding = normalized_any((p1 - p0).cross(p2 - p0));
+    let winding = Vec3::from(triangle.normal);
     let front = winding.dot(direction) < 0.0;
     let geometric_normal = if front { winding } else { -winding };
     let mut shading_normal = geometric_normal;
@@ -72,7 +67,7 @@ pub fn surface_at(scene: &SceneView<'_>, slot: u32, u: f32, v: f32, direction: V
     }
     Surface {
         position,
-        error,
+        offset: triangle.offset,
         geometric_normal,
         shading_normal,
         albedo,

@@ -2,10 +2,11 @@
 
 use glam::Vec3;
 use twinlight_core::math::hash::{mix_pair, to_unit};
-use twinlight_core::math::vector::{basis, normalized, normalized_any, to_world};
+use twinlight_core::math::vector::{basis, normalized, to_world};
+use twinlight_core::scene::Triangle;
 use twinlight_core::transport::bsdf::cosine_hemisphere;
 use twinlight_core::transport::intersect::{ray_frame, triangle};
-use twinlight_core::transport::offset::{offset_origin, triangle_error};
+use twinlight_core::transport::offset::offset_origin;
 
 fn number(i: u32, k: u32) -> f32 {
     to_unit(mix_pair(i, k))
@@ -36,11 +37,12 @@ fn t6_no_triangle_meets_its_own_rays() {
         let (mut met, mut met_needles) = (0, 0);
         for i in 0..100_000 {
             let [p0, p1, p2] = corners(i, scale);
+            let record = Triangle::new([p0, p1, p2].map(Vec3::to_array), 0, 0);
             let (x, y) = (number(i, 20), number(i, 21));
             let (u, v) = if x + y > 1.0 { (1.0 - x, 1.0 - y) } else { (x, y) };
             let (a, b, c) = (p0 * ((1.0 - u) - v), p1 * u, p2 * v);
             let position = (a + b) + c;
-            let normal = normalized_any((p1 - p0).cross(p2 - p0));
+            let normal = Vec3::from(record.normal);
             let mut local = cosine_hemisphere(number(i, 22), number(i, 23));
             if i.is_multiple_of(3) {
                 // Grazing: a thousandth of the height.
@@ -48,9 +50,8 @@ fn t6_no_triangle_meets_its_own_rays() {
             }
             let (t, s) = basis(normal);
             let direction = to_world(t, s, normal, local);
-            let error = triangle_error(p0, p1, p2, a, b, c);
             for side in [direction, -direction] {
-                let origin = offset_origin(position, error, normal, side);
+                let origin = offset_origin(position, record.offset, normal, side);
                 let again = triangle(&ray_frame(origin, side), p0, p1, p2, 0.0, 1e30).is_some();
                 *(if i % 4 == 3 { &mut met_needles } else { &mut met }) += u32::from(again);
             }
@@ -65,10 +66,11 @@ fn t6_no_triangle_meets_its_own_rays() {
 fn offsets_are_small() {
     for i in 0..10_000 {
         let [p0, p1, p2] = corners(i, 1.0);
+        let record = Triangle::new([p0, p1, p2].map(Vec3::to_array), 0, 0);
         let (a, b, c) = (p0 * 0.2, p1 * 0.3, p2 * 0.5);
         let position = (a + b) + c;
-        let normal = normalized_any((p1 - p0).cross(p2 - p0));
-        let moved = offset_origin(position, triangle_error(p0, p1, p2, a, b, c), normal, normal);
+        let normal = Vec3::from(record.normal);
+        let moved = offset_origin(position, record.offset, normal, normal);
         let size = p0.length() + p1.length() + p2.length();
         assert!((moved - position).length() < 1e-5 * size, "{} for size {size}", (moved - position).length());
     }

@@ -223,7 +223,7 @@ fn no_self_hit<B: Backend>(cx: &Context<'_, B>, scene: &CompiledScene) -> Check 
         let direction = Vec3::from(towards.direction);
         let surface = surface_at(&SceneView::from(scene), slot, u, v, -direction);
         let normal = surface.geometric_normal;
-        let origin = offset_origin(surface.position, surface.error, normal, direction);
+        let origin = offset_origin(surface.position, surface.offset, normal, direction);
         let (origin, direction) = (origin.to_array(), direction.to_array());
         rays.push(Ray { origin, t_min: 0.0, direction, t_max: f32::INFINITY });
         left.push(scene.triangles[slot as usize].id);

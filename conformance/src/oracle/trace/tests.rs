@@ -1,7 +1,7 @@
 use super::*;
 
 fn unit(id: u32, z: f32) -> Triangle {
-    Triangle { p0: [0.0, 0.0, z], id, p1: [1.0, 0.0, z], material: 0, p2: [0.0, 1.0, z], light: u32::MAX }
+    Triangle::new([[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]], id, 0)
 }
 
 fn down(x: f32, y: f32) -> Ray {

@@ -1,0 +1,56 @@
+//! Eight lanes of `u32` as an array; what every instruction set without vector multiplication uses.
+
+use super::Words;
+use std::marker::PhantomData;
+use std::ops::{Add, BitAnd, BitXor, Mul};
+
+/// Eight words; `W` is the token of the width they serve.
+#[derive(Clone, Copy)]
+pub struct Array<W>([u32; 8], PhantomData<W>);
+
+macro_rules! operators {
+    ($($trait:ident $method:ident $word:ident),*) => {$(
+        impl<W> $trait for Array<W> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Array(std::array::from_fn(|i| self.0[i].$word(other.0[i])), PhantomData)
+            }
+        }
+    )*};
+}
+operators!(Add add wrapping_add, Mul mul wrapping_mul, BitAnd bitand bitand, BitXor bitxor bitxor);
+
+impl<W: Copy> Words for Array<W> {
+    type Token = W;
+
+    #[inline(always)]
+    fn splat(_: W, value: u32) -> Self {
+        Array([value; 8], PhantomData)
+    }
+    #[inline(always)]
+    fn load(_: W, from: &[u32; 8]) -> Self {
+        Array(*from, PhantomData)
+    }
+    #[inline(always)]
+    fn to_array(self) -> [u32; 8] {
+        self.0
+    }
+    #[inline(always)]
+    fn shift_right<const BITS: i32>(self) -> Self {
+        Array(self.0.map(|x| x >> BITS), PhantomData)
+    }
+    #[inline(always)]
+    fn reverse_bits(self) -> Self {
+        Array(self.0.map(u32::reverse_bits), PhantomData)
+    }
+    #[inline(always)]
+    fn lower_then_upper(self, upper: Self) -> Self {
+        let ([a, b, c, d, ..], [.., e, f, g, h]) = (self.0, upper.0);
+        Array([a, b, c, d, e, f, g, h], PhantomData)
+    }
+    #[inline(always)]
+    fn to_units(self) -> [f32; 8] {
+        self.0.map(twinlight_core::math::hash::to_unit)
+    }
+}
