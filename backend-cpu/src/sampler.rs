@@ -110,12 +110,12 @@ fn mix<W: Width>(width: W, value: W::U8) -> W::U8 {
 #[inline(always)]
 fn scramble_reversed<W: Width>(width: W, value: W::U8, seed: W::U8) -> W::U8 {
     let splat = |x| W::U8::splat(width, x);
-    let x = value ^ value * splat(0x3d20_adea);
+    let x = value ^ (value * splat(0x3d20_adea));
     let x = x + seed;
     let high = seed.shift_right::<16>();
     let x = x * ((high & splat(!1)) + splat(1));
-    let x = x ^ x * splat(0x0552_6c56);
-    x ^ x * splat(0x53a2_2864)
+    let x = x ^ (x * splat(0x0552_6c56));
+    x ^ (x * splat(0x53a2_2864))
 }
 
 /// `twinlight_core::math::sobol::second_dimension_reversed`.

@@ -9,7 +9,7 @@ use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
     shade_primary as shade_contract, trace as trace_contract, trace_paths as paths_contract,
 };
-use twinlight_core::transport::{intersect, light, offset};
+use twinlight_core::transport::{intersect, light};
 use twinlight_core::{bvh, math, scene, transport};
 
 /// A Rust struct: name, size, and its fields with their offsets.

@@ -153,7 +153,7 @@ fn trace_path<W: Width>(
             to_viewer.dot(bitangent),
             to_viewer.dot(surface.shading_normal),
         );
-        // [4] scatter, worked out before [3] sends its ray: the processor overlaps the two.
+        // The way on is worked out before the shadow ray is sent: the processor overlaps the two.
         let scattered = scatter(material, &surface, wo, &numbers);
         let direction = to_world(tangent, bitangent, surface.shading_normal, scattered.direction);
         let leaves = direction.dot(surface.geometric_normal);
@@ -163,6 +163,7 @@ fn trace_path<W: Width>(
             let frame = (tangent, bitangent, surface.shading_normal);
             add_direct_light(&mut path, tracer, scene, &surface, frame, wo, sampler, base, &numbers);
         }
+        // [4] scatter
         if scattered.direction == Vec3::ZERO || (material.kind != MATERIAL_DIELECTRIC && !(leaves > 0.0)) {
             return path.light;
         }

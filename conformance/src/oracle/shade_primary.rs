@@ -158,8 +158,8 @@ fn surface(
         3.0 * position.1 + 6.0 * ETA * (offset.abs().max_element() + aim.origin.abs().max_element());
 
     let cross = e1.cross(e2);
-    // Each component of the cross product is off by 2 + 2 roundings of the products of edges; then 10 of normalising.
-    let normal_error = 4.0 * ETA * (e1.length() * e2.length()) * 2.0 / cross.length() + 10.0 * ETA;
+    // The record's normal comes from f64 and is rounded once.
+    let normal_error = 2.0 * ETA;
     let winding = cross.normalize();
     let facing = winding.dot(aim.direction);
     let edge_on = facing.abs() <= 3.0 * normal_error + 2.0 * aim.error;

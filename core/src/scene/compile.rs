@@ -1,7 +1,9 @@
 //! From a [`Scene`] to the flat records of a [`CompiledScene`].
 
 use super::compiled::*;
-use super::{COORDINATE_LIMIT, Instance, Light, Limits, Material, MaterialKind, Mesh, Scene, Texture, Wrap};
+use super::{
+    COORDINATE_LIMIT, Instance, Light, Limits, Material, MaterialKind, Mesh, Scene, Texture, Triangle, Wrap,
+};
 use crate::bvh;
 use crate::error::{Error, Result};
 use bytemuck::Zeroable;

@@ -1,9 +1,8 @@
 //! The flat, world-space form of a scene that backends upload. Every record is `repr(C)` and has a WGSL twin.
 
+use super::triangle::Triangle;
 use crate::bvh::Bvh;
-use crate::transport::offset::leaving_distance;
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
 
 /// No texture, no light, no alias.
 pub const NONE: u32 = u32::MAX;
@@ -37,53 +36,6 @@ pub const EMITS_BOTH_SIDES: u32 = 1;
 
 /// The first words of [`CompiledScene::words`] decode an sRGB byte to linear light.
 pub const SRGB_TABLE_LEN: u32 = 256;
-
-/// Positions of one triangle, world units relative to [`CompiledScene::origin`], in leaf order of the BVH.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct Triangle {
-    /// First vertex.
-    pub p0: [f32; 3],
-    /// The triangle's number in the scene: instances in order, triangles of each mesh in order.
-    pub id: u32,
-    /// Second vertex.
-    pub p1: [f32; 3],
-    /// Index into [`CompiledScene::materials`].
-    pub material: u32,
-    /// Third vertex.
-    pub p2: [f32; 3],
-    /// Index into [`CompiledScene::lights`] when the triangle emits, else [`NONE`].
-    pub light: u32,
-    /// Unit normal of the side whose vertices run counter-clockwise; 0 for a triangle without area.
-    pub normal: [f32; 3],
-    /// How far along the normal rays start off the triangle ([`crate::transport::offset::leaving_distance`]).
-    pub offset: f32,
-}
-
-impl Triangle {
-    /// The record of a triangle that emits nothing.
-    #[must_use]
-    pub fn new(corners: [[f32; 3]; 3], id: u32, material: u32) -> Self {
-        let [p0, p1, p2] = corners;
-        let normal = normal(corners);
-        Self {
-            p0,
-            id,
-            p1,
-            material,
-            p2,
-            light: NONE,
-            normal: normal.to_array(),
-            offset: leaving_distance(corners.map(Vec3::from), normal),
-        }
-    }
-}
-
-/// In f64, where differences and products of corners are all but exact: the normal of a needle is as good as any.
-fn normal(corners: [[f32; 3]; 3]) -> Vec3 {
-    let [p0, p1, p2] = corners.map(|p| Vec3::from(p).as_dvec3());
-    (p1 - p0).cross(p2 - p0).normalize_or_zero().as_vec3()
-}
 
 /// Shading attributes of one triangle, in leaf order.
 #[repr(C)]

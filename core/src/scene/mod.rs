@@ -7,6 +7,7 @@ mod environment;
 mod light;
 mod material;
 mod mesh;
+mod triangle;
 mod validate;
 
 pub use camera::Camera;
@@ -14,13 +15,14 @@ pub use compile::compile;
 pub use compiled::{
     CompiledScene, EMITS_BOTH_SIDES, EnvironmentHeader, HAS_NORMALS, HAS_TEXCOORDS, LIGHT_DIRECTIONAL,
     LIGHT_ENVIRONMENT, LIGHT_POINT, LIGHT_SPHERE, LIGHT_SPOT, LIGHT_TRIANGLE, LightRecord,
-    MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_OPAQUE, MaterialRecord, NONE, SRGB_TABLE_LEN, Triangle,
+    MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_OPAQUE, MaterialRecord, NONE, SRGB_TABLE_LEN,
     TriangleAttributes,
 };
 pub use environment::Environment;
 pub use light::Light;
 pub use material::{Material, MaterialKind, Texture, Wrap};
 pub use mesh::{Instance, Mesh, Transform};
+pub use triangle::Triangle;
 pub use validate::{COORDINATE_LIMIT, Limits};
 
 /// A scene as a reader or a program describes it. [`Scene::validate`] and [`compile`] check it once; kernels trust

@@ -37,7 +37,7 @@ fn t6_no_triangle_meets_its_own_rays() {
         let (mut met, mut met_needles) = (0, 0);
         for i in 0..100_000 {
             let [p0, p1, p2] = corners(i, scale);
-            let record = Triangle::new([p0, p1, p2].map(Vec3::to_array), 0, 0);
+            let record = Triangle::new([p0, p1, p2].map(|p| p.to_array()), 0, 0);
             let (x, y) = (number(i, 20), number(i, 21));
             let (u, v) = if x + y > 1.0 { (1.0 - x, 1.0 - y) } else { (x, y) };
             let (a, b, c) = (p0 * ((1.0 - u) - v), p1 * u, p2 * v);
@@ -66,7 +66,7 @@ fn t6_no_triangle_meets_its_own_rays() {
 fn offsets_are_small() {
     for i in 0..10_000 {
         let [p0, p1, p2] = corners(i, 1.0);
-        let record = Triangle::new([p0, p1, p2].map(Vec3::to_array), 0, 0);
+        let record = Triangle::new([p0, p1, p2].map(|p| p.to_array()), 0, 0);
         let (a, b, c) = (p0 * 0.2, p1 * 0.3, p2 * 0.5);
         let position = (a + b) + c;
         let normal = Vec3::from(record.normal);

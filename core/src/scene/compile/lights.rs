@@ -1,7 +1,8 @@
 //! The light list and its alias table.
 
 use super::super::compiled::*;
-use super::super::{Light, Scene};
+use super::super::{Light, Scene, Triangle};
+
 use bytemuck::Zeroable;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
