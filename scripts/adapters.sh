@@ -48,6 +48,11 @@ if [ -n "$twinlight_missing" ]; then
   echo "  lavapipe: package mesa-vulkan-drivers (Debian, Ubuntu), vulkan-swrast (Arch), mesa-vulkan-drivers (Fedora)" >&2
   echo "  SwiftShader: libvk_swiftshader.so and vk_swiftshader_icd.json of any Chromium; name the manifest in VK_DRIVER_FILES" >&2
 fi
+# Mesa asks for a runtime folder and writes an error per device without one.
+if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
+  export XDG_RUNTIME_DIR="$twinlight_root/target/run"
+  mkdir -p "$XDG_RUNTIME_DIR" && chmod 700 "$XDG_RUNTIME_DIR"
+fi
 if [ -n "$twinlight_lvp$twinlight_ss" ]; then
   export VK_DRIVER_FILES="$twinlight_lvp${twinlight_lvp:+${twinlight_ss:+:}}$twinlight_ss${VK_DRIVER_FILES:+:$VK_DRIVER_FILES}"
 fi

@@ -8,6 +8,7 @@ pub mod error;
 pub mod kernels;
 pub mod math;
 pub mod scene;
+pub mod srgb;
 pub mod transport;
 
 pub use accuracy::Accuracy;

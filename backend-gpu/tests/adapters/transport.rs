@@ -28,15 +28,24 @@ const SCENES: [&str; 7] = ["cornell", "materials", "lights", "veach", "axis", "t
 const WIDTH: u32 = 24;
 const HEIGHT: u32 = 16;
 
-/// Share of the elements that must agree in portable mode. Statistics are conformance's job, this only tells a broken
-/// kernel from a rounding one: on llvmpipe 44 % of the texels of the worst film were seen to differ, no hit and no
-/// G-buffer texel.
+/// Share of the elements that must have the same bits in portable mode. Statistics are conformance's job, this only
+/// tells a broken kernel from a rounding one: no hit and no G-buffer texel was seen to differ on llvmpipe.
 const PORTABLE_HITS: f64 = 0.9;
-const PORTABLE_FILMS: f64 = 0.4;
 
-/// Or the film's light must agree to this share. A choice, not a derived bound: one texel after 90 vertices was seen to
-/// differ by 0.1 % on llvmpipe. Finer differences are for conformance's z-test.
-const PORTABLE_LIGHT: f64 = 0.01;
+/// How well a film must agree in portable mode, where drivers round as they like while the random numbers are the same.
+struct Tolerance {
+    /// Greatest relative difference of a texel's light that counts as rounding.
+    light: f64,
+    /// Share of the texels that must differ by rounding only; in the others a path may have branched otherwise.
+    share: f64,
+}
+
+/// A handful of vertices: of 3800 texels on llvmpipe, the worst was seen to differ by 9.5e-6, 99 % by less than 6e-7.
+const FILMS: Tolerance = Tolerance { light: 1.0 / 65536.0, share: 0.99 };
+
+/// 80 vertices and more, at each of which a position's error is carried on to the next wall and grows: on llvmpipe half
+/// of the texels were seen to differ by 8e-5, 5 % by 2e-3, 1 % by 1.1e-2.
+const LONG_PATHS: Tolerance = Tolerance { light: 1.0 / 64.0, share: 0.95 };
 
 struct Pair {
     name: &'static str,
@@ -135,11 +144,11 @@ fn shade<B: Backend>(
 fn films(target: &Target) -> Result<(), Failed> {
     for name in SCENES {
         let pair = Pair::new(name)?;
-        compare_films(target, &pair, &pair.paths(UNLIMITED_BOUNCES)?)?;
+        compare_films(target, &pair, &pair.paths(UNLIMITED_BOUNCES)?, &FILMS)?;
     }
     let pair = Pair::new("cornell")?;
     for bounces in [0, 1, 2] {
-        compare_films(target, &pair, &pair.paths(bounces)?)?;
+        compare_films(target, &pair, &pair.paths(bounces)?, &FILMS)?;
     }
     Ok(())
 }
@@ -151,12 +160,17 @@ fn long_paths(target: &Target) -> Result<(), Failed> {
     let pair = Pair { name: "furnace", scene, compiled };
     for max_bounces in [90, UNLIMITED_BOUNCES] {
         let params = TracePathsParams { roulette_begin: 80, ..pair.paths(max_bounces)? };
-        compare_films(target, &pair, &params)?;
+        compare_films(target, &pair, &params, &LONG_PATHS)?;
     }
     Ok(())
 }
 
-fn compare_films(target: &Target, pair: &Pair, params: &TracePathsParams) -> Result<(), Failed> {
+fn compare_films(
+    target: &Target,
+    pair: &Pair,
+    params: &TracePathsParams,
+    portable: &Tolerance,
+) -> Result<(), Failed> {
     let gpu = GpuBackend::new(target.device()?.clone());
     let want = film(&CpuBackend::new(), &pair.compiled, params)?;
     let got = film(&gpu, &pair.compiled, params)?;
@@ -168,19 +182,26 @@ fn compare_films(target: &Target, pair: &Pair, params: &TracePathsParams) -> Res
         return Err(format!("{}: samples missing, rejected or astray", pair.name).into());
     }
     let what = format!("{} film, {} bounces", pair.name, params.max_bounces);
-    // Over dozens of vertices every sum is rounded somewhere, so that no texel keeps its bits; but the random numbers are
-    // the same, and few paths branch otherwise: the light of the whole film stays.
-    let (light, expected) = (total(&got, params), total(&want, params));
-    if target.device()?.mode() == Mode::Portable && (light / expected - 1.0).abs() < PORTABLE_LIGHT {
+    if target.device()?.mode() == Mode::Strict {
+        return expect_twins(target, &what, &got, &want, 1.0);
+    }
+    let texels = || got[begin..].iter().zip(&want[begin..]);
+    let differs = |(got, want): &(&FilmTexel, &FilmTexel)| {
+        let (got, want) = (light(got, params), light(want, params));
+        (got - want).abs() > portable.light * got.max(want)
+    };
+    let differing = texels().filter(differs).count();
+    if differing as f64 <= (1.0 - portable.share) * texels().count() as f64 {
         return Ok(());
     }
-    expect_twins(target, &what, &got, &want, PORTABLE_FILMS)
+    let first = texels().find(differs);
+    let (limit, all) = (portable.light, texels().count());
+    Err(format!("{what}: {differing} of {all} texels differ by more than {limit:.1e}: {first:?}").into())
 }
 
-/// All light of a film.
-fn total(film: &[FilmTexel], params: &TracePathsParams) -> f64 {
-    let words = film.iter().flat_map(|texel| texel.direct.iter().chain(&texel.indirect));
-    words.map(|&w| to_f64(w, params.film_exponent)).sum()
+/// All light of a texel.
+fn light(texel: &FilmTexel, params: &TracePathsParams) -> f64 {
+    texel.direct.iter().chain(&texel.indirect).map(|&w| to_f64(w, params.film_exponent)).sum()
 }
 
 fn film<B: Backend>(

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::bvh;
 use crate::error::{Error, Result};
+use crate::srgb;
 use bytemuck::Zeroable;
 use glam::{DMat3, DVec3, Vec3};
 
@@ -268,18 +269,12 @@ fn material_record(m: &Material, textures: &[Texture], offsets: &[u32]) -> Mater
 
 /// The sRGB table, then the textures' texels, R in the low byte. Returns the words and each texture's first word.
 fn texture_words(textures: &[Texture]) -> (Vec<u32>, Vec<u32>) {
-    let mut words: Vec<u32> = (0..SRGB_TABLE_LEN).map(|b| srgb_to_linear(b as u8).to_bits()).collect();
+    let linear = |byte: u32| srgb::decode(f64::from(byte) / 255.0) as f32;
+    let mut words: Vec<u32> = (0..SRGB_TABLE_LEN).map(|byte| linear(byte).to_bits()).collect();
     let mut offsets = Vec::with_capacity(textures.len());
     for texture in textures {
         offsets.push(words.len() as u32);
         words.extend(texture.texels.iter().map(|&t| u32::from_le_bytes(t)));
     }
     (words, offsets)
-}
-
-/// IEC 61966-2-1, computed in f64 once on the host.
-fn srgb_to_linear(byte: u8) -> f32 {
-    let c = f64::from(byte) / 255.0;
-    let linear = if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
-    linear as f32
 }

@@ -21,7 +21,7 @@ pub mod error;
 pub mod falsecolor;
 pub mod image;
 pub mod metrics;
-pub mod srgb;
 pub mod tonemap;
 
 pub use error::PostError;
+pub use twinlight_core::srgb;

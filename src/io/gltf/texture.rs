@@ -1,13 +1,13 @@
 //! Pictures: albedo textures, and the means of those that the surface model has no place for.
 
 use super::Document;
-use crate::io::image::{decode_texture, srgb_to_linear};
+use crate::io::image::decode_texture;
 use ::gltf::json;
 use ::gltf::json::texture::{Info, WrappingMode};
 use ::gltf::json::validation::Checked;
 use std::collections::BTreeMap;
 use twinlight_core::scene::{Texture, Wrap};
-use twinlight_core::{Error, Result};
+use twinlight_core::{Error, Result, srgb};
 
 /// An albedo texture and the coordinates it is read at.
 pub(super) struct TextureUse {
@@ -174,7 +174,7 @@ impl Refused {
 }
 
 fn mean(picture: &Texture) -> Mean {
-    let linear: Vec<f64> = (0..=255_u8).map(|b| f64::from(srgb_to_linear(f32::from(b) / 255.0))).collect();
+    let linear: Vec<f64> = (0..=255_u8).map(|b| srgb::decode(f64::from(b) / 255.0)).collect();
     let (mut decoded, mut stored) = ([0.0; 3], [0_u64; 3]);
     for texel in &picture.texels {
         for c in 0..3 {

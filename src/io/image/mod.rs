@@ -8,12 +8,10 @@ mod guard;
 mod layered;
 pub mod png;
 mod raster;
-mod srgb;
 
 pub use exr::{read_environment as read_exr_environment, read_layers};
 pub use layered::{Channel, LayeredImage, RgbImage, Samples};
 pub use raster::decode_texture;
-pub use srgb::{linear_to_srgb, srgb_to_linear};
 
 use twinlight_core::Result;
 use twinlight_core::scene::Limits;

@@ -1,10 +1,10 @@
 //! PNG and JPEG.
 
-use super::{RgbImage, guard, srgb_to_linear};
+use super::{RgbImage, guard};
 use ::image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
 use std::io::Cursor;
 use twinlight_core::scene::{Limits, Texture, Wrap};
-use twinlight_core::{Error, Result};
+use twinlight_core::{Error, Result, srgb};
 
 /// Decodes a PNG or JPEG into an 8-bit sRGB texture (grey is spread over RGB, missing alpha is opaque, 16 bits are
 /// rounded to 8) that repeats. The format is recognised by the first bytes.
@@ -23,7 +23,7 @@ pub fn decode_texture(bytes: &[u8], name: &str, limits: &Limits) -> Result<Textu
 pub(super) fn decode_linear(bytes: &[u8], name: &str, limits: &Limits) -> Result<RgbImage> {
     let encoded = decode(bytes, name, limits)?.into_rgb32f();
     let (width, height) = encoded.dimensions();
-    let pixels = encoded.pixels().map(|p| p.0.map(srgb_to_linear)).collect();
+    let pixels = encoded.pixels().map(|p| p.0.map(|c| srgb::decode(f64::from(c)) as f32)).collect();
     Ok(RgbImage { width, height, pixels })
 }
 

@@ -1,22 +1,27 @@
-//! The sRGB transfer function (IEC 61966-2-1) and the luminance of Rec. 709 primaries.
+//! The sRGB transfer function (IEC 61966-2-1) and the luminance of Rec. 709 primaries. For the host: kernels look encoded
+//! bytes up in a table.
 
-/// Linear value in [0, 1] to sRGB-encoded value in [0, 1]. Exact piecewise curve, not a power of 2.2.
+/// Linear value in [0, 1] to sRGB-encoded value in [0, 1]. The piecewise curve, not a power of 2.2.
+#[must_use]
 pub fn encode(linear: f64) -> f64 {
     if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// sRGB-encoded value in [0, 1] to linear value in [0, 1]; the inverse of [`encode`].
+#[must_use]
 pub fn decode(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Linear value to the nearest of the 256 sRGB codes; clamped, NaN becomes 0.
+#[must_use]
 pub fn encode_u8(linear: f64) -> u8 {
     // `as` saturates and turns NaN into 0; the half makes it round to nearest.
     (encode(linear.clamp(0.0, 1.0)) * 255.0 + 0.5) as u8
 }
 
 /// Relative luminance Y of linear Rec. 709 RGB.
+#[must_use]
 pub fn luminance(rgb: [f64; 3]) -> f64 {
     0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
 }
