@@ -108,3 +108,54 @@ fn share(job: &Job, taken: u32, progress: &Progress, elapsed: Duration) -> f64 {
     let by_time = job.time.map_or(0.0, |limit| elapsed.as_secs_f64() / limit.as_secs_f64());
     by_samples.max(by_time).min(1.0)
 }
+
+#[cfg(all(test, feature = "gpu"))]
+mod tests {
+    use super::*;
+    use twinlight::gpu::{DeviceOptions, GpuBackend};
+    use twinlight::scene::{Camera, Limits, compile};
+
+    fn open() -> Option<GpuBackend> {
+        match GpuBackend::open(&DeviceOptions::default()) {
+            Ok(gpu) => Some(gpu),
+            Err(none) if std::env::var_os("TWINLIGHT_REQUIRE_GPU").is_none() => {
+                println!("skipped, no adapter: {none}");
+                None
+            }
+            Err(none) => panic!("TWINLIGHT_REQUIRE_GPU is set: {none}"),
+        }
+    }
+
+    /// D1: whatever was sampled before a device goes away is the picture, and a new device goes on.
+    #[test]
+    fn d1_a_lost_device_leaves_the_batches_before() {
+        let scene = twinlight::fixtures::scenes::builtin("cornell").unwrap();
+        let compiled = compile(&scene, &Limits::default()).unwrap();
+        let settings = Settings { width: 16, height: 16, samples: 64, ..Settings::default() };
+        let job = Job { settings, time: None, camera: Camera::of_scene(&scene).unwrap() };
+        // Batches have 1, 2, 4 … samples.
+        for (lost_at, saved) in [(1, 0), (3, 1), (4, 3)] {
+            let Some(gpu) = open() else { return };
+            let resident = gpu.upload_scene(&compiled).unwrap();
+            let destroy = |progress: Progress| {
+                if progress.samples >= lost_at {
+                    gpu.device().destroy();
+                }
+            };
+            let taken = take(&gpu, &resident, &compiled, &job, || None, destroy);
+            if saved == 0 {
+                assert!(matches!(taken, Err(Error::DeviceLost { .. })));
+                continue;
+            }
+            let taken = taken.unwrap();
+            assert_eq!(taken.stop, Stop::DeviceLost);
+            assert!(matches!(taken.lost, Some(Error::DeviceLost { .. })));
+            let settings = Settings { samples: saved, ..job.settings.clone() };
+            let Some(new) = open() else { return };
+            let resident = new.upload_scene(&compiled).unwrap();
+            let expected =
+                reference::render(&new, &resident, &compiled, &job.camera, &settings, |_| Control::Continue);
+            assert_eq!(taken.film, expected.unwrap().film, "lost at sample {lost_at}");
+        }
+    }
+}

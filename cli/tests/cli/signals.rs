@@ -39,3 +39,22 @@ fn one_signal_saves_valid_files() {
         assert_eq!(sidecar["result"]["stop"], "interrupted");
     }
 }
+
+/// The first signal asks for a stop, which waits for a pass; who can't wait sends another.
+#[test]
+fn two_signals_end_at_once_and_leave_no_half_file() {
+    let folder = Folder::new();
+    let flags = ["--size", "4096x4096", "--spp", "16000000", "--backend", "cpu", "--progress", "json"];
+    let mut command = folder.command(&[&["render", "builtin:room-70k"], &flags[..]].concat());
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    assert_ne!(stderr.read_line(&mut String::new()).unwrap(), 0, "the render ended by itself");
+    // Repeated, because two signals on the way at the same time count as one.
+    while child.try_wait().unwrap().is_none() {
+        Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let status = child.wait().unwrap();
+    assert_eq!(status.code(), Some(130));
+    assert_eq!(std::fs::read_dir(folder.path(".")).unwrap().count(), 0);
+}
