@@ -199,6 +199,7 @@ fn with_intersection(mut constants: Constants) -> Constants {
         ("SLAB_FAR_FACTOR", intersect::SLAB_FAR_FACTOR.into()),
         ("PAD_EXTENT", intersect::PAD_EXTENT.into()),
         ("PAD_COORDINATE", intersect::PAD_COORDINATE.into()),
+        ("SIDE_ERROR", intersect::SIDE_ERROR.into()),
         ("STACK", (bvh::MAX_DEPTH + 1).into()),
         ("NONE", scene::NONE.into()),
         ("NONE", trace_contract::NO_HIT.into()),

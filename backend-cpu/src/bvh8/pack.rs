@@ -3,7 +3,7 @@
 
 use crate::simd::{LaneMask, Lanes, Width};
 use glam::Vec3;
-use twinlight_core::transport::intersect::{RayFrame, larger, padded_bounds, slab};
+use twinlight_core::transport::intersect::RayFrame;
 
 /// Triangles per pack.
 pub(super) const PACK: usize = 8;
@@ -22,17 +22,13 @@ pub(super) struct Pack {
 impl Pack {
     pub(super) const EMPTY: Pack = Pack { corners: [[[0.0; PACK]; 3]; 3] };
 
-    /// The ray parameter of triangle `lane`, if its padded bounds are met too. One triangle at a time: few get here, and
-    /// nearly all of them are hits.
+    /// The corners of triangle `lane`.
     #[inline(always)]
-    pub(super) fn t(&self, lane: usize, frame: &RayFrame, t_edge: f32) -> Option<f32> {
-        let [p0, p1, p2] = [0, 1, 2].map(|vertex| {
+    pub(super) fn triangle(&self, lane: usize) -> [Vec3; 3] {
+        [0, 1, 2].map(|vertex| {
             let [x, y, z] = &self.corners[vertex];
             Vec3::new(x[lane], y[lane], z[lane])
-        });
-        let (min, max) = padded_bounds(p0, p1, p2);
-        let (near, far) = slab(frame, min, max);
-        (larger(near, 0.0) <= far).then_some(larger(t_edge, near))
+        })
     }
 }
 
@@ -45,14 +41,13 @@ pub(super) struct PackRay<W: Width> {
     t_min: f32,
 }
 
-/// Lanes of a pack that a ray may meet: all but condition 2 of the contract, which [`Pack::t`] adds.
+/// Lanes of a pack that a ray may meet. Few lanes get here, and most of them are hits: what remains of the contract is
+/// tested one by one, by `twinlight_core::transport::intersect::triangle_t`.
 pub(super) struct PackHits<W: Width> {
-    /// Bit i: the edges of triangle i let the ray through, and `t_min < t_edge ≤ t_best`.
+    /// Bit i: the edges of triangle i let the ray through, and its corners' depths lie about `t_min ..= t_best`.
     pub mask: u32,
-    pub t_edge: PackLanes<W>,
-    /// Edge functions V and W, and the determinant that makes weights of them.
-    pub edges: [PackLanes<W>; 2],
-    pub determinant: PackLanes<W>,
+    /// Edge functions U, V and W.
+    pub edges: [PackLanes<W>; 3],
 }
 
 /// Three numbers of every triangle of a pack: of a corner, by permuted axis.
@@ -107,17 +102,18 @@ impl<W: Width> PackRay<W> {
         let u = cx * by - cy * bx;
         let v = ax * cy - ay * cx;
         let w = bx * ay - by * ax;
-        // One sign only, and not all zero. A NaN that slips through here fails the test of the determinant below.
+        // One sign only, and not all zero. A NaN that slips through here fails the test of
+        // the determinant later.
         let one_sided = u.minimum(v).minimum(w).lt(zero) ^ zero.lt(u.maximum(v).maximum(w));
         if one_sided.bits() == 0 {
             return None;
         }
-        // Of u, v and w with one sign and not all zero the sum isn't zero; where it is NaN, so is t, which is in no range.
-        let determinant = (u + v) + w;
-        let t_edge = ((u * (sz * a[2]) + v * (sz * b[2])) + w * (sz * c[2])) / determinant;
-        let in_range = PackLanes::<W>::splat(width, self.t_min).lt(t_edge)
-            & t_edge.le(PackLanes::<W>::splat(width, t_best));
-        Some(PackHits { mask: (one_sided & in_range).bits(), t_edge, edges: [v, w], determinant })
+        let (az, bz, cz) = (sz * a[2], sz * b[2], sz * c[2]);
+        let high = az.maximum(bz).maximum(cz);
+        let low = az.minimum(bz).minimum(cz);
+        let in_range =
+            PackLanes::<W>::splat(width, self.t_min).lt(high) & low.le(PackLanes::<W>::splat(width, t_best));
+        Some(PackHits { mask: (one_sided & in_range).bits(), edges: [u, v, w] })
     }
 }
 

@@ -98,8 +98,7 @@ mod tests {
         let frame = ray_frame(Vec3::from(ray.origin), Vec3::from(ray.direction));
         let mut best = Hit { t: ray.t_max, triangle: NO_HIT, u: 0.0, v: 0.0 };
         for t in &scene.triangles {
-            let [p0, p1, p2] = [t.p0, t.p1, t.p2].map(Vec3::from);
-            if let Some(met) = triangle(&frame, p0, p1, p2, ray.t_min, ray.t_max)
+            if let Some(met) = triangle(&frame, t, ray.t_min, ray.t_max)
                 && (met.t, t.id) < (best.t, best.triangle)
             {
                 best = Hit { t: met.t, triangle: t.id, u: met.u, v: met.v };

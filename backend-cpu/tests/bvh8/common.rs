@@ -142,7 +142,7 @@ pub fn least_hit(scene: &CompiledScene, ray: &Ray) -> SlotHit {
     let frame = ray_frame(ray.origin.into(), ray.direction.into());
     let mut best = (SlotHit { t: ray.t_max, u: 0.0, v: 0.0, slot: NO_SLOT }, u32::MAX);
     for (slot, t) in scene.triangles.iter().enumerate() {
-        let met = triangle(&frame, t.p0.into(), t.p1.into(), t.p2.into(), ray.t_min, ray.t_max);
+        let met = triangle(&frame, t, ray.t_min, ray.t_max);
         if let Some(hit) = met
             && (hit.t, t.id) < (best.0.t, best.1)
         {

@@ -4,9 +4,11 @@ const MIN_DIRECTION: f32 = 8.6736174e-19f;
 const SLAB_FAR_FACTOR: f32 = 1.0000004768371582f;
 const PAD_EXTENT: f32 = 9.5367431640625e-7f;
 const PAD_COORDINATE: f32 = 2.384185791015625e-7f;
+const SIDE_ERROR: f32 = 9.5367431640625e-7f;
 
 struct RayFrame {
     origin: vec3<f32>,
+    direction: vec3<f32>,
     inverse: vec3<f32>,
     axes: vec3<u32>,
     shear: vec3<f32>,
@@ -47,7 +49,7 @@ fn ray_frame(origin: vec3<f32>, direction: vec3<f32>) -> RayFrame {
     let shear = vec3<f32>(direction[kx] / dominant, direction[ky] / dominant, scale);
     let inverse =
         vec3<f32>(safe_reciprocal(direction.x), safe_reciprocal(direction.y), safe_reciprocal(direction.z));
-    return RayFrame(origin, inverse, vec3<u32>(kx, ky, kz), shear);
+    return RayFrame(origin, direction, inverse, vec3<u32>(kx, ky, kz), shear);
 }
 
 // Entry and exit parameters of a ray and a box.
@@ -94,8 +96,82 @@ struct TriangleHit {
     v: f32,
 }
 
+struct PlaneHit {
+    met: bool,
+    t: f32,
+}
+
+// Where a ray meets the plane of a triangle (corners relative to the ray's origin), or t_edge where rounding leaves open
+// on which side of it the ray starts; not met when it starts on one side and goes away from it.
+fn plane_t(
+    frame: RayFrame,
+    normal: vec3<f32>,
+    a: vec3<f32>,
+    b: vec3<f32>,
+    c: vec3<f32>,
+    t_edge: f32,
+) -> PlaneHit {
+    let height = -dot_product(normal, a);
+    let slope = dot_product(normal, frame.direction);
+    let x = larger(larger(abs(a.x), abs(b.x)), abs(c.x));
+    let y = larger(larger(abs(a.y), abs(b.y)), abs(c.y));
+    let z = larger(larger(abs(a.z), abs(b.z)), abs(c.z));
+    let doubt = larger(larger(x, y), z) * SIDE_ERROR;
+    if height > doubt {
+        return PlaneHit(slope < 0.0f, height / -slope);
+    }
+    if height < -doubt {
+        return PlaneHit(slope > 0.0f, -height / slope);
+    }
+    return PlaneHit(true, t_edge);
+}
+
+// Conditions 2 to 4 for a triangle whose edges let the ray through.
+fn triangle_t(
+    frame: RayFrame,
+    normal: vec3<f32>,
+    p0: vec3<f32>,
+    p1: vec3<f32>,
+    p2: vec3<f32>,
+    edges: vec3<f32>,
+    t_min: f32,
+    t_max: f32,
+) -> PlaneHit {
+    let miss = PlaneHit(false, 0.0f);
+    let determinant = (edges.x + edges.y) + edges.z;
+    // Zero or NaN, by its bits: a driver may turn `!(x < 0 || x > 0)` into `x >= 0 && x <= 0`, which NaN passes.
+    let magnitude = bitcast<u32>(determinant) & 0x7fffffffu;
+    if magnitude == 0u || magnitude > 0x7f800000u {
+        return miss;
+    }
+    let kz = frame.axes.z;
+    let a = p0 - frame.origin;
+    let b = p1 - frame.origin;
+    let c = p2 - frame.origin;
+    let az = frame.shear.z * a[kz];
+    let bz = frame.shear.z * b[kz];
+    let cz = frame.shear.z * c[kz];
+    let low = smaller(smaller(az, bz), cz);
+    let high = larger(larger(az, bz), cz);
+    if !(high > t_min && low <= t_max) {
+        return miss;
+    }
+    let bounds = padded_bounds(p0, p1, p2);
+    let range = slab(frame, bounds.low, bounds.high);
+    let near = range.x;
+    if !(larger(near, 0.0f) <= range.y) {
+        return miss;
+    }
+    let t_edge = ((edges.x * az + edges.y * bz) + edges.z * cz) / determinant;
+    let plane = plane_t(frame, normal, a, b, c, t_edge);
+    let t = smaller(larger(plane.t, low), high);
+    let t_i = larger(t, near);
+    return PlaneHit(plane.met && t > t_min && t_i <= t_max, t_i);
+}
+
 fn triangle(
     frame: RayFrame,
+    normal: vec3<f32>,
     p0: vec3<f32>,
     p1: vec3<f32>,
     p2: vec3<f32>,
@@ -121,30 +197,12 @@ fn triangle(
     if (u < 0.0f || v < 0.0f || w < 0.0f) && (u > 0.0f || v > 0.0f || w > 0.0f) {
         return miss;
     }
+    let hit = triangle_t(frame, normal, p0, p1, p2, vec3<f32>(u, v, w), t_min, t_max);
+    if !hit.met {
+        return miss;
+    }
     let determinant = (u + v) + w;
-    // Zero or NaN, by its bits: a driver may turn `!(x < 0 || x > 0)` into `x >= 0 && x <= 0`, which NaN passes.
-    let magnitude = bitcast<u32>(determinant) & 0x7fffffffu;
-    if magnitude == 0u || magnitude > 0x7f800000u {
-        return miss;
-    }
-    let az = frame.shear.z * a[kz];
-    let bz = frame.shear.z * b[kz];
-    let cz = frame.shear.z * c[kz];
-    let t_edge = ((u * az + v * bz) + w * cz) / determinant;
-    if !(t_edge > t_min) {
-        return miss;
-    }
-    let bounds = padded_bounds(p0, p1, p2);
-    let range = slab(frame, bounds.low, bounds.high);
-    let near = range.x;
-    if !(larger(near, 0.0f) <= range.y) {
-        return miss;
-    }
-    let t = larger(t_edge, near);
-    if t <= t_max {
-        return TriangleHit(true, t, v / determinant, w / determinant);
-    }
-    return miss;
+    return TriangleHit(true, hit.t, v / determinant, w / determinant);
 }
 
 struct SphereRoots {

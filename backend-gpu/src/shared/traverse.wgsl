@@ -17,6 +17,11 @@ fn node_range(frame: RayFrame, index: u32) -> vec2<f32> {
     return vec2<f32>(larger(range.x, 0.0f), range.y);
 }
 
+fn triangle_in(slot: u32, frame: RayFrame, t_min: f32, t_max: f32) -> TriangleHit {
+    let record = triangles[slot];
+    return triangle(frame, record.normal, record.p0, record.p1, record.p2, t_min, t_max);
+}
+
 // The hit with the least (t, id) in t_min < t <= t_max.
 fn closest(origin: vec3<f32>, direction: vec3<f32>, t_min: f32, t_max: f32) -> SlotHit {
     let frame = ray_frame(origin, direction);
@@ -43,9 +48,7 @@ fn closest(origin: vec3<f32>, direction: vec3<f32>, t_min: f32, t_max: f32) -> S
             let first = nodes[index].first;
             let count = nodes[index].count;
             for (var slot = first; slot < first + count; slot++) {
-                let hit = triangle(
-                    frame, triangles[slot].p0, triangles[slot].p1, triangles[slot].p2, t_min, best.t,
-                );
+                let hit = triangle_in(slot, frame, t_min, best.t);
                 let id = triangles[slot].id;
                 if hit.met && (hit.t < best.t || id < best_id) {
                     best = SlotHit(hit.t, hit.u, hit.v, slot);
@@ -92,8 +95,7 @@ fn occluded(origin: vec3<f32>, direction: vec3<f32>, t_min: f32, t_max: f32) -> 
         let first = nodes[index].first;
         let count = nodes[index].count;
         for (var slot = first; slot < first + count; slot++) {
-            let hit =
-                triangle(frame, triangles[slot].p0, triangles[slot].p1, triangles[slot].p2, t_min, t_max);
+            let hit = triangle_in(slot, frame, t_min, t_max);
             found = found || hit.met;
         }
         if found {

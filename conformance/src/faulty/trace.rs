@@ -70,8 +70,7 @@ fn is_back(triangles: &[Triangle], ray: &Ray, id: u32) -> bool {
 fn highest_tie(triangles: &[Triangle], ray: &Ray, hit: Hit) -> Hit {
     let frame = ray_frame(Vec3::from(ray.origin), Vec3::from(ray.direction));
     let as_near = |t: &Triangle| {
-        let [p0, p1, p2] = [t.p0, t.p1, t.p2].map(Vec3::from);
-        let met = triangle(&frame, p0, p1, p2, ray.t_min, ray.t_max)?;
+        let met = triangle(&frame, t, ray.t_min, ray.t_max)?;
         (met.t == hit.t).then_some(Hit { t: met.t, triangle: t.id, u: met.u, v: met.v })
     };
     triangles.iter().filter_map(as_near).max_by_key(|h| h.triangle).unwrap_or(hit)

@@ -23,7 +23,7 @@ use twinlight_core::transport::intersect::{RayFrame, TriangleHit, ray_frame, tri
 pub use bounds::{Aim, Interval, Possible, wide};
 
 fn test(frame: &RayFrame, ray: &Ray, t: &Triangle) -> Option<TriangleHit> {
-    triangle(frame, t.p0.into(), t.p1.into(), t.p2.into(), ray.t_min, ray.t_max)
+    triangle(frame, t, ray.t_min, ray.t_max)
 }
 
 fn frame_of(ray: &Ray) -> RayFrame {

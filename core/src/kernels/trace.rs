@@ -12,7 +12,10 @@
 //! 1. the sheared edge functions U, V, W ([`crate::transport::intersect::triangle`]) don't have mixed signs (zero
 //!    counts for both sides, so a ray through a shared edge or vertex meets at least one of the triangles there), and
 //! 2. the ray meets the triangle's padded bounds ([`crate::transport::intersect::slab`]), `t_near ≤ t_far`, and
-//! 3. `t_min < t_edge`, and `t_i = max(t_edge, t_near) ≤ t_max`.
+//! 3. the ray doesn't start off the triangle's plane and go away from it, and
+//! 4. t lies in `t_min < t` and `t_i = max(t, t_near) ≤ t_max`. Here t is where the ray meets the plane if rounding leaves
+//!    no doubt on which side of the plane it starts, else t_edge, the mean of the corners' depths along the ray with
+//!    weights U, V, W; either is clamped to the range of these depths.
 //!
 //! The closest hit is the least (t_i, id). Condition 2 makes the answer independent of the acceleration structure:
 //! slab arithmetic is monotone in the bounds, so a box that holds a triangle's padded bounds is never missed by a ray

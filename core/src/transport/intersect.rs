@@ -2,6 +2,7 @@
 //!
 //! The meaning of a hit is in [`crate::kernels::trace`].
 
+use crate::scene::Triangle;
 use glam::Vec3;
 
 /// Smallest magnitude of a direction component that is divided by: 2⁻⁶⁰. Below it the component counts as ±2⁻⁶⁰, so
@@ -18,11 +19,19 @@ pub const PAD_EXTENT: f32 = 9.536_743_164_062_5e-7;
 /// … and by this share of its largest coordinate, 2⁻²².
 pub const PAD_COORDINATE: f32 = 2.384_185_791_015_625e-7;
 
+/// How far a ray's origin has to be off a triangle's plane, as a share of the farthest corner's distance along an axis,
+/// before it counts as being on that side: 2⁻²⁰ = 16u. Rounding moves the height by less than 9u of that distance (one
+/// rounding of each difference, of the normal and of the product, two of the sum; √3 for three axes), and the
+/// direction's slope by 7u: a ray that counts as leaving would meet the plane beyond all three corners if it did.
+pub const SIDE_ERROR: f32 = 9.536_743_164_062_5e-7;
+
 /// What is computed once per ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RayFrame {
     /// Origin.
     pub origin: Vec3,
+    /// Direction.
+    pub direction: Vec3,
     /// Reciprocal of the direction, components at least [`MIN_DIRECTION`] in magnitude beforehand.
     pub inverse: Vec3,
     /// Axes: the last is the direction's dominant one, the order keeps the winding.
@@ -63,7 +72,7 @@ pub fn ray_frame(origin: Vec3, direction: Vec3) -> RayFrame {
         Vec3::new(components[kx as usize & 3] / dominant, components[ky as usize & 3] / dominant, scale);
     let inverse =
         Vec3::new(safe_reciprocal(direction.x), safe_reciprocal(direction.y), safe_reciprocal(direction.z));
-    RayFrame { origin, inverse, axes: [kx, ky, kz], shear }
+    RayFrame { origin, direction, inverse, axes: [kx, ky, kz], shear }
 }
 
 /// Entry and exit parameters of a ray and a box, the exit moved out by [`SLAB_FAR_FACTOR`]. The ray meets the box in
@@ -126,16 +135,64 @@ pub struct TriangleHit {
     pub v: f32,
 }
 
-/// Conditions 1 to 3 of [`crate::kernels::trace`].
+/// Where a ray meets the plane of a triangle, or `t_edge` where rounding leaves open on which side of it the ray starts.
+/// `None` when it starts on one side and goes away from it. The edge functions alone can't tell: `t_edge` is off by
+/// rounding times the triangle's aspect, so that a needle would meet its own rays and miss those of its neighbour.
 #[inline(always)]
-pub fn triangle(
+fn plane_t(frame: &RayFrame, normal: Vec3, [a, b, c]: [Vec3; 3], t_edge: f32) -> Option<f32> {
+    let height = -(normal.dot(a));
+    let slope = normal.dot(frame.direction);
+    let (a, b, c) = (a.abs(), b.abs(), c.abs());
+    let x = larger(larger(a.x, b.x), c.x);
+    let y = larger(larger(a.y, b.y), c.y);
+    let z = larger(larger(a.z, b.z), c.z);
+    let doubt = larger(larger(x, y), z) * SIDE_ERROR;
+    if height > doubt {
+        return (slope < 0.0).then_some(height / -slope);
+    }
+    if height < -doubt {
+        return (slope > 0.0).then_some(-height / slope);
+    }
+    Some(t_edge)
+}
+
+/// Conditions 2 to 4 of [`crate::kernels::trace`] for a triangle whose `edges` U, V, W let the ray through: t.
+#[inline(always)]
+pub fn triangle_t(
     frame: &RayFrame,
-    p0: Vec3,
-    p1: Vec3,
-    p2: Vec3,
+    normal: Vec3,
+    [p0, p1, p2]: [Vec3; 3],
+    [u, v, w]: [f32; 3],
     t_min: f32,
     t_max: f32,
-) -> Option<TriangleHit> {
+) -> Option<f32> {
+    let determinant = (u + v) + w;
+    // Written so that NaN fails too.
+    if !(determinant < 0.0 || determinant > 0.0) {
+        return None;
+    }
+    let relative = [p0 - frame.origin, p1 - frame.origin, p2 - frame.origin];
+    let [a, b, c] = relative.map(|p| frame.shear.z * [p.x, p.y, p.z, 0.0][frame.axes[2] as usize & 3]);
+    let low = smaller(smaller(a, b), c);
+    let high = larger(larger(a, b), c);
+    if !(high > t_min && low <= t_max) {
+        return None;
+    }
+    let (min, max) = padded_bounds(p0, p1, p2);
+    let (near, far) = slab(frame, min, max);
+    if !(larger(near, 0.0) <= far) {
+        return None;
+    }
+    let t_edge = ((u * a + v * b) + w * c) / determinant;
+    let t = smaller(larger(plane_t(frame, normal, relative, t_edge)?, low), high);
+    let t_i = larger(t, near);
+    (t > t_min && t_i <= t_max).then_some(t_i)
+}
+
+/// Conditions 1 to 4 of [`crate::kernels::trace`].
+#[inline(always)]
+pub fn triangle(frame: &RayFrame, record: &Triangle, t_min: f32, t_max: f32) -> Option<TriangleHit> {
+    let [p0, p1, p2] = [record.p0, record.p1, record.p2].map(Vec3::from);
     let [kx, ky, kz] = frame.axes.map(|k| k as usize);
     let a = p0 - frame.origin;
     let b = p1 - frame.origin;
@@ -152,25 +209,9 @@ pub fn triangle(
     if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
         return None;
     }
+    let t = triangle_t(frame, record.normal.into(), [p0, p1, p2], [u, v, w], t_min, t_max)?;
     let determinant = (u + v) + w;
-    // Written so that NaN fails too.
-    if !(determinant < 0.0 || determinant > 0.0) {
-        return None;
-    }
-    let az = frame.shear.z * a[kz];
-    let bz = frame.shear.z * b[kz];
-    let cz = frame.shear.z * c[kz];
-    let t_edge = ((u * az + v * bz) + w * cz) / determinant;
-    if !(t_edge > t_min) {
-        return None;
-    }
-    let (min, max) = padded_bounds(p0, p1, p2);
-    let (near, far) = slab(frame, min, max);
-    if !(larger(near, 0.0) <= far) {
-        return None;
-    }
-    let t = larger(t_edge, near);
-    if t <= t_max { Some(TriangleHit { t, u: v / determinant, v: w / determinant }) } else { None }
+    Some(TriangleHit { t, u: v / determinant, v: w / determinant })
 }
 
 /// Entry and exit of a ray (direction of any length) and a sphere, or `None`. The discriminant is formed from the

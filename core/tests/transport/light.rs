@@ -150,8 +150,7 @@ fn t9_light_sampling_follows_its_density() {
         let frame = intersect::ray_frame(from, d);
         let mut sum = 0.0;
         for t in &scene.triangles {
-            let [a, b, c] = [t.p0, t.p1, t.p2].map(Vec3::from);
-            if let Some(hit) = intersect::triangle(&frame, a, b, c, 0.0, 1e9) {
+            if let Some(hit) = intersect::triangle(&frame, t, 0.0, 1e9) {
                 let record = &scene.lights[t.light as usize];
                 let cosine = Vec3::from(record.direction).dot(d).abs();
                 sum += f64::from(triangle_light_pdf(record, hit.t, cosine));

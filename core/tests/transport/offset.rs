@@ -16,25 +16,23 @@ fn vector(i: u32, k: u32) -> Vec3 {
     Vec3::new(number(i, k), number(i, k + 1), number(i, k + 2)) * 2.0 - 1.0
 }
 
-/// Triangles in general position, in a coordinate plane through the origin, far from it, and needles of 1000 : 1.
+/// Triangles in general position, in a coordinate plane through the origin, far from it, and needles of 10³ : 1 to 10⁶ : 1.
 fn corners(i: u32, scale: f32) -> [Vec3; 3] {
     let mut p = [vector(i, 0), vector(i, 3), vector(i, 6)];
     match i % 4 {
         1 => p.iter_mut().for_each(|p| p.y = 0.0),
         2 => p.iter_mut().for_each(|p| *p += Vec3::new(37.0, -11.0, 53.0)),
-        3 => p[2] = p[0] + (p[1] - p[0]) * 0.5 + vector(i, 9) * 1e-3,
+        3 => p[2] = p[0] + (p[1] - p[0]) * 0.5 + vector(i, 9) * [1e-3, 1e-4, 1e-5, 1e-6][i as usize / 4 % 4],
         _ => {}
     }
     p.map(|p| p * scale)
 }
 
-/// T6: 10⁵ triangles at every scale, directions down to the horizon. A needle's own plane is ill-conditioned (the error
-/// of t grows with its aspect): 1.2 % of the rays that leave one meet it again, which costs its small area one
-/// bounce and lets no light through.
+/// T6: 10⁵ triangles at every scale, a quarter of them needles of 10³ : 1 to 10⁶ : 1, directions down to the horizon.
 #[test]
 fn t6_no_triangle_meets_its_own_rays() {
     for scale in [1e-3, 1.0, 1e3, 1e6] {
-        let (mut met, mut met_needles) = (0, 0);
+        let mut met = 0;
         for i in 0..100_000 {
             let [p0, p1, p2] = corners(i, scale);
             let record = Triangle::new([p0, p1, p2].map(|p| p.to_array()), 0, 0);
@@ -52,12 +50,11 @@ fn t6_no_triangle_meets_its_own_rays() {
             let direction = to_world(t, s, normal, local);
             for side in [direction, -direction] {
                 let origin = offset_origin(position, record.offset, normal, side);
-                let again = triangle(&ray_frame(origin, side), p0, p1, p2, 0.0, 1e30).is_some();
-                *(if i % 4 == 3 { &mut met_needles } else { &mut met }) += u32::from(again);
+                let again = triangle(&ray_frame(origin, side), &record, 0.0, 1e30).is_some();
+                met += u32::from(again);
             }
         }
-        assert_eq!(met, 0, "scale {scale}: {met} of 150000 rays meet the triangle they leave");
-        assert!(met_needles < 1000, "scale {scale}: {met_needles} of 50000 rays meet the needle they leave");
+        assert_eq!(met, 0, "scale {scale}: {met} of 200000 rays meet the triangle they leave");
     }
 }
 

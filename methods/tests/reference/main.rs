@@ -4,6 +4,7 @@ mod determinism;
 mod known_answers;
 mod metamorphic;
 mod robustness;
+mod walls;
 
 use twinlight_backend_cpu::CpuBackend;
 use twinlight_core::Backend;

@@ -6,7 +6,9 @@
 
 use glam::DVec3;
 use twinlight_core::kernels::trace::Ray;
-use twinlight_core::transport::intersect::{MIN_DIRECTION, PAD_COORDINATE, PAD_EXTENT, SLAB_FAR_FACTOR};
+use twinlight_core::transport::intersect::{
+    MIN_DIRECTION, PAD_COORDINATE, PAD_EXTENT, SIDE_ERROR, SLAB_FAR_FACTOR,
+};
 
 /// One ulp, 2⁻²³, and 2⁻¹⁰ of it for products of errors.
 const ETA: f64 = 1.001 / 8_388_608.0;
@@ -29,6 +31,15 @@ impl Interval {
 
     fn and(self, other: Self) -> Self {
         Self { low: self.low.max(other.low), high: self.high.min(other.high) }
+    }
+
+    fn or(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// Where clamping to this range takes a number of `other`.
+    fn pull(self, other: Self) -> Self {
+        Self { low: other.low.clamp(self.low, self.high), high: other.high.clamp(self.low, self.high) }
     }
 }
 
@@ -111,27 +122,75 @@ pub fn possible_hit(ray: &Aim, corners: &[[f32; 3]; 3]) -> Option<Possible> {
         low: depths.iter().fold(f64::INFINITY, |m, &z| m.min(z)) - rounding,
         high: depths.iter().fold(f64::NEG_INFINITY, |m, &z| m.max(z)) + rounding,
     };
-    let mut t = hull;
+    let mut t_edge = hull;
     let (mut u, mut v) = (weight_range(), weight_range());
     if determinant > slack {
         let divisor = determinant - slack;
         let moved: f64 = (0..3).map(|i| errors.edges[i] * (depths[i] - exact.t).abs()).sum::<f64>() / divisor;
-        t = t.and(Interval::around(exact.t, moved + rounding));
+        t_edge = t_edge.and(Interval::around(exact.t, moved + rounding));
         let weight = |i: usize| {
             let w = exact.edges[i].abs() / determinant;
             weight_range().and(Interval::around(w, (errors.edges[i] + w * slack) / divisor + 2.5 * ETA * w))
         };
         (u, v) = (weight(1), weight(2));
     }
-    // t = max(t_edge, near).
-    t = Interval { low: t.low.max(slab.near.low), high: t.high.max(slab.near.high) };
-    let (t_min, t_max) = (ray.t_min, ray.t_max);
-    if t.high <= t_min || t.low > t_max {
+    let plane = Plane::of(ray, &relative);
+    if plane.left == Some(true) {
         return None;
     }
-    let in_range = t.low > t_min && t.high <= t_max;
-    let t = t.and(Interval { low: t_min, high: t_max });
-    Some(Possible { certain: inside && meets && in_range, t, u, v })
+    let t = match plane.aside {
+        Some(true) => hull.pull(plane.t),
+        Some(false) => t_edge,
+        None => hull.pull(plane.t).or(t_edge),
+    };
+    let (t_min, t_max) = (ray.t_min, ray.t_max);
+    // t_i = max(t, near).
+    let t_i = Interval { low: t.low.max(slab.near.low), high: t.high.max(slab.near.high) };
+    if t.high <= t_min || t_i.low > t_max {
+        return None;
+    }
+    let in_range = t.low > t_min && t_i.high <= t_max;
+    let certain = inside && meets && in_range && plane.left == Some(false);
+    Some(Possible { certain, t: t_i.and(Interval { low: t_min, high: t_max }), u, v })
+}
+
+/// A ray and a triangle's plane; `None` where rounding decides.
+struct Plane {
+    /// Whether the ray starts off the plane.
+    aside: Option<bool>,
+    /// Whether it does and goes away from it.
+    left: Option<bool>,
+    /// Where it meets the plane.
+    t: Interval,
+}
+
+impl Plane {
+    fn of(ray: &Aim, relative: &[DVec3; 3]) -> Self {
+        let normal = (relative[1] - relative[0]).cross(relative[2] - relative[0]).normalize_or_zero();
+        let reach = relative.iter().fold(0.0_f64, |m, a| m.max(a.abs().max_element()));
+        let doubt = reach * f64::from(SIDE_ERROR);
+        // One rounding of the difference, half of one of the normal (made on the host), one of the product, two of the sum.
+        let error = |v: DVec3| 4.5 * ETA * normal.abs().dot(v.abs());
+        let (height, slope) = (-normal.dot(relative[0]), normal.dot(ray.direction));
+        // And of the doubt: one of the product, one of a distance.
+        let height_error = error(relative[0]) + 2.0 * ETA * doubt;
+        let slope_error = error(ray.direction) + normal.abs().element_sum() * ray.error;
+        let surely = |holds: bool, fails: bool| if holds { Some(true) } else { fails.then_some(false) };
+        let aside = surely(height.abs() > doubt + height_error, height.abs() <= doubt - height_error);
+        // Off the plane the sign of the height is sure.
+        let away = slope * height.signum();
+        let goes = surely(away > slope_error, away < -slope_error);
+        let left = match (aside, goes) {
+            (Some(true), goes) => goes,
+            (Some(false), _) | (None, Some(false)) => Some(false),
+            (None, _) => None,
+        };
+        let t = -height / slope;
+        let divisor = slope.abs() - slope_error;
+        let moved = (height_error + t.abs() * slope_error) / divisor + 2.5 * ETA * t.abs();
+        let t = if divisor > 0.0 { Interval::around(t, moved) } else { Interval::ANY };
+        Self { aside, left, t }
+    }
 }
 
 /// Weights of accepted hits: quotients of a part and a sum of three that are not negative, with four roundings.
