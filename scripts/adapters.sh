@@ -38,8 +38,9 @@ twinlight_swiftshader() {
   [ -f "$manifest" ] && printf '%s' "$manifest"
 }
 
-twinlight_lvp=$(twinlight_lavapipe)
-twinlight_ss=$(twinlight_swiftshader)
+# Callers may end at the first failure; what is missing is said below instead.
+twinlight_lvp=$(twinlight_lavapipe) || true
+twinlight_ss=$(twinlight_swiftshader) || true
 twinlight_missing=""
 [ -z "$twinlight_lvp" ] && twinlight_missing="lavapipe"
 [ -z "$twinlight_ss" ] && twinlight_missing="$twinlight_missing SwiftShader"

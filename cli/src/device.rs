@@ -26,7 +26,7 @@ pub fn open(
 ) -> Result<(Device, Option<String>), Failure> {
     match choice {
         BackendChoice::Cpu => Ok((Device::Cpu(cpu(threads)?), None)),
-        BackendChoice::Gpu(selector) => Ok((gpu(selector, mode)?, None)),
+        BackendChoice::Gpu(selector) => gpu(selector, mode),
         BackendChoice::Auto => auto(mode, threads),
     }
 }
@@ -71,10 +71,18 @@ fn auto(_: Option<ModeName>, threads: Option<u16>) -> Result<(Device, Option<Str
 }
 
 #[cfg(feature = "gpu")]
-fn gpu(selector: &str, mode: Option<ModeName>) -> Result<Device, Failure> {
+fn gpu(selector: &str, mode: Option<ModeName>) -> Result<(Device, Option<String>), Failure> {
     // Parsing a selector can't fail: what is no number is a name.
     let selector = selector.parse().unwrap_or_default();
-    open_gpu(selector, mode)
+    let device = open_gpu(selector, mode)?;
+    let notice = match &device {
+        Device::Gpu(backend) if backend.device().report().device_type == "cpu" => {
+            let name = &backend.device().report().name;
+            Some(format!("{name} is a GPU in software, many times slower than --backend cpu"))
+        }
+        _ => None,
+    };
+    Ok((device, notice))
 }
 
 #[cfg(feature = "gpu")]
@@ -89,7 +97,7 @@ fn open_gpu(adapter: AdapterSelector, mode: Option<ModeName>) -> Result<Device, 
 }
 
 #[cfg(not(feature = "gpu"))]
-fn gpu(_: &str, _: Option<ModeName>) -> Result<Device, Failure> {
+fn gpu(_: &str, _: Option<ModeName>) -> Result<(Device, Option<String>), Failure> {
     let tried = "gpu: this twinlight was built without GPU support".into();
     Err(Failure::Library(Stage::Device, twinlight::Error::BackendUnavailable { tried }))
 }

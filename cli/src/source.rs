@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use twinlight::io::toml_scene::RenderSettings;
 use twinlight::io::{self, builtin};
-use twinlight::scene::{self, CompiledScene, Scene};
+use twinlight::scene::{self, Camera, CompiledScene, Scene};
 
 /// A scene that is ready to be looked at or rendered.
 pub struct Prepared {
@@ -24,14 +24,16 @@ pub struct Prepared {
     pub compile_time: Duration,
 }
 
-/// Reads, completes and compiles a scene.
+/// Reads, completes and compiles a scene; `camera` comes before the scene's own, so that a light that has to be added
+/// stands beside it.
 ///
 /// # Errors
 /// Those of the readers and of [`scene::compile`].
-pub fn prepare(name: &str, args: &LoadArgs) -> Result<Prepared, Failure> {
+pub fn prepare(name: &str, args: &LoadArgs, camera: Option<Camera>) -> Result<Prepared, Failure> {
     let start = Instant::now();
     let (mut scene, settings) =
         io::load_with_settings(name, &args.options()).map_err(Failure::at(Stage::Input))?;
+    scene.camera = camera.or(scene.camera);
     io::complete(&mut scene);
     let load_time = start.elapsed();
     let compiled = scene::compile(&scene, &args.limits()).map_err(Failure::at(Stage::Input))?;

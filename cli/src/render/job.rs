@@ -69,7 +69,7 @@ impl Job {
             let what = format!("bytes for a picture of {}x{} pixels", size.0, size.1);
             return Err(Failure::Library(Stage::Input, Error::limit(what, needed, limit)));
         }
-        let camera = args.camera.map(|c| c.0).or_else(|| Camera::of_scene(&prepared.scene));
+        let camera = Camera::of_scene(&prepared.scene);
         let camera =
             camera.ok_or_else(|| input("camera", "the scene has none and no bounds to frame".into()))?;
         Ok(Self { settings, time, camera })

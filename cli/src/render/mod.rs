@@ -27,7 +27,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let display = Display::new(args.tone.exposure, args.tone.tonemap).map_err(Failure::Pictures)?;
     let outputs = Outputs::plan(&args.outputs, &source::stem(&args.scene))?;
-    let prepared = source::prepare(&args.scene, &args.load)?;
+    let prepared = source::prepare(&args.scene, &args.load, args.camera.map(|c| c.0))?;
     let job = Job::new(args, &prepared)?;
     outputs.prepare_folders()?;
     let interrupt = Interrupt::watch()

@@ -56,6 +56,10 @@ impl Outputs {
             std::fs::File::create_new(&probe).map_err(io)?;
             std::fs::remove_file(&probe).map_err(io)?;
         }
+        if self.sidecar.exists() && !is_sidecar(&self.sidecar) {
+            let what = "exists and is not a report of twinlight: name the picture otherwise with -o";
+            return Err(Failure::Usage(format!("'{}' {what}", self.sidecar.display())));
+        }
         Ok(())
     }
 
@@ -102,6 +106,13 @@ fn format_of(path: &Path) -> Result<Format, Failure> {
         ("exr", Some(_)) => Ok(Format::Exr),
         _ => Err(Failure::Usage(format!("'{}': pictures end in .png or .exr", path.display()))),
     }
+}
+
+/// Whether a file is what [`super::sidecar::json`] writes, which may be replaced; anything else is somebody's.
+fn is_sidecar(path: &Path) -> bool {
+    let parsed =
+        std::fs::read(path).ok().and_then(|text| serde_json::from_slice::<serde_json::Value>(&text).ok());
+    parsed.is_some_and(|value| value.get("twinlight").is_some())
 }
 
 #[cfg(test)]

@@ -18,6 +18,10 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         let what = format!("'{}': scenes are written as .toml or .ply", args.output.display());
         return Err(Failure::Usage(what));
     }
+    if same_file(Path::new(&args.scene), &args.output) {
+        let what = format!("'{}' is the scene that is read: name another file", args.output.display());
+        return Err(Failure::Usage(what));
+    }
     let (scene, settings) =
         load_with_settings(&args.scene, &args.load.options()).map_err(Failure::at(Stage::Input))?;
     scene.validate(&args.load.limits()).map_err(Failure::at(Stage::Input))?;
@@ -33,6 +37,11 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let bytes = ply::encode(&flattened(&scene), |_| true);
     write_file(&args.output, &bytes).map_err(Failure::at(Stage::Output))?;
     report::print(&format!("{}\n", args.output.display()))
+}
+
+/// Whether two names lead to one file that exists.
+fn same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 /// All instances as one mesh in world space. Normals and texture coordinates stay where every mesh has them.

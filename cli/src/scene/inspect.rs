@@ -13,7 +13,7 @@ use twinlight::scene::{Light, MaterialKind};
 /// # Errors
 /// Those of reading the scene.
 pub fn run(args: &InspectArgs) -> Result<(), Failure> {
-    let prepared = source::prepare(&args.scene, &args.load)?;
+    let prepared = source::prepare(&args.scene, &args.load, None)?;
     report::print(&if args.json { json_text(&args.scene, &prepared) } else { text(&args.scene, &prepared) })
 }
 
