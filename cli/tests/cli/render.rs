@@ -109,3 +109,30 @@ fn progress_lines_reach_one_and_never_fall() {
     let run = folder.run(&small("builtin:cornell", &["--progress", "plain"])).ok();
     assert!(run.stderr.contains("100.0 %  4 spp"), "{}", run.stderr);
 }
+
+#[test]
+fn somebodys_json_is_not_replaced() {
+    let folder = Folder::new();
+    folder.write("picture.json", "{\"mine\": 1}");
+    let run = folder.run(&small("builtin:furnace", &["-o", "picture.png"]));
+    run.fails(2, "'picture.json' exists and is not a report of twinlight");
+    assert_eq!(folder.read("picture.json"), b"{\"mine\": 1}");
+    // An earlier report is replaced.
+    for _ in 0..2 {
+        folder.run(&small("builtin:furnace", &["-o", "other.png"])).ok();
+    }
+}
+
+/// A scene without camera and light: the light that is added stands beside the camera asked for.
+#[test]
+fn an_added_light_is_where_the_camera_is() {
+    let folder = Folder::new();
+    folder.write("floor.obj", "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n");
+    let camera = ["--camera", "0.5,2,0.001 0.5,0,0 20", "-o", "floor.exr"];
+    let run = folder.run(&small("floor.obj", &camera)).ok();
+    assert!(run.stderr.contains("no light in the scene"), "{}", run.stderr);
+    assert!(!run.stderr.contains("no camera"), "{}", run.stderr);
+    let image = read_rgb(&folder.read("floor.exr"), "floor.exr", &Limits::default()).unwrap();
+    let mean = image.pixels.iter().map(|p| p[1]).sum::<f32>() / image.pixels.len() as f32;
+    assert!(mean > 0.1, "{mean}");
+}

@@ -53,3 +53,12 @@ fn inspection_list_and_schema() {
         serde_json::from_str(&folder.run(&["scene", "schema"]).ok().stdout).unwrap();
     assert!(schema["properties"]["camera"].is_object());
 }
+
+#[test]
+fn a_scene_is_not_converted_onto_itself() {
+    let folder = Folder::new();
+    folder.run(&["scene", "convert", "builtin:furnace", "a.toml"]).ok();
+    let before = folder.read("a.toml");
+    folder.run(&["scene", "convert", "a.toml", "./a.toml"]).fails(2, "is the scene that is read");
+    assert_eq!(folder.read("a.toml"), before);
+}
