@@ -156,8 +156,14 @@ fn table(args: &CompareArgs, comparison: &Comparison, ztest: Option<&ZTest>) -> 
         let verdict = if z.passes() { "passes" } else { "FAILS" };
         let _ = writeln!(
             text,
-            "\nz-test of luminance {verdict}: {} of {} values beyond z* = {:.3}, largest |z| {:.3}, bias z {:.3} (limit {:.3})\n{FORMULA}",
-            z.failures, z.values, z.threshold, z.max_abs_z, z.bias_z[0], z.bias_threshold
+            "\nz-test of luminance {verdict}: {} of {} values beyond z* = {:.3} ({:.2} % may be), largest |z| {:.3}, bias z {:.3} (limit {:.3})\n{FORMULA}",
+            z.failures,
+            z.values,
+            z.threshold,
+            100.0 * z.settings.allowed_fraction,
+            z.max_abs_z,
+            z.bias_z[0],
+            z.bias_threshold
         );
     }
     text
