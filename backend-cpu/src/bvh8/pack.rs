@@ -41,7 +41,7 @@ pub(super) struct PackRay<W: Width> {
     t_min: f32,
 }
 
-/// Lanes of a pack that a ray may meet. Few lanes get here, and most of them are hits: what remains of the contract is
+/// Lanes of a pack that a ray may meet: about one or two, behind the ray among them. What remains of the contract is
 /// tested one by one, by `twinlight_core::transport::intersect::triangle_t`.
 pub(super) struct PackHits<W: Width> {
     /// Bit i: the edges of triangle i let the ray through, and its corners' depths lie about `t_min ..= t_best`.
@@ -102,8 +102,7 @@ impl<W: Width> PackRay<W> {
         let u = cx * by - cy * bx;
         let v = ax * cy - ay * cx;
         let w = bx * ay - by * ax;
-        // One sign only, and not all zero. A NaN that slips through here fails the test of
-        // the determinant later.
+        // One sign only, and not all zero. A NaN that slips through here fails the test of the determinant later.
         let one_sided = u.minimum(v).minimum(w).lt(zero) ^ zero.lt(u.maximum(v).maximum(w));
         if one_sided.bits() == 0 {
             return None;

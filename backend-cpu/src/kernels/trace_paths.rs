@@ -112,7 +112,7 @@ fn trace_path<W: Width>(
     sampler: &Sampler,
 ) -> PathLight {
     // [1] sample: a point of the pixel
-    // Pair 0; the others that come with it cost nothing.
+    // Pair 0, with others that aren't needed: one vector of pairs takes fewer instructions than a pair by itself.
     let [jx, jy] = sampler.vertex(tracer.1, 0).direction;
     let x = (pixel % params.width) as f32 + jx;
     let y = (pixel / params.width) as f32 + jy;

@@ -12,10 +12,9 @@ use glam::{DVec3, Vec3};
 /// next f32, unlike PBRT's.
 const POSITION_ERROR: f32 = 6.556_516e-7;
 
-/// 2⁻¹⁹ = 32u of the triangle's extent: how far from its plane, measured along the normal, the sheared test may place
-/// the intersection of a ray that starts in it. Translation and shear displace a vertex by 3u·extent, an edge function
-/// collects at most 16u·extent², the weighted sum of depths doubles that; divided by the determinant the error grows
-/// like 1/cosine, measured along the normal it doesn't. Without it, walls in a coordinate plane (position and its error
+/// 2⁻¹⁹ = 32u of the triangle's extent: more than the 16u from which on a ray counts as off the plane
+/// ([`crate::transport::intersect::SIDE_ERROR`]) and the 9u by which rounding may move its height above it, so that a ray
+/// that starts here and goes away is known to leave. Without it, walls in a coordinate plane (position and its error
 /// exactly 0) meet themselves.
 const PLANE_ERROR: f32 = 1.907_348_6e-6;
 
