@@ -37,7 +37,6 @@ impl WideBvh {
             nodes: vec![Node::EMPTY],
             packs: vec![Pack::EMPTY],
             slots: vec![NO_SLOT; PACK],
-            normals: vec![[0.0; 4]; PACK],
             ids: vec![u32::MAX; PACK],
         };
         let mut builder = Builder { scene, collapse: Collapse::new(&scene.bvh), wide };
@@ -142,7 +141,6 @@ impl Builder<'_> {
         for lane in 0..PACK {
             let Some(&slot) = slots.get(lane) else {
                 self.wide.slots.push(NO_SLOT);
-                self.wide.normals.push([0.0; 4]);
                 self.wide.ids.push(u32::MAX);
                 continue;
             };
@@ -153,8 +151,9 @@ impl Builder<'_> {
                 }
             }
             self.wide.slots.push(slot);
-            let [x, y, z] = triangle.normal;
-            self.wide.normals.push([x, y, z, 0.0]);
+            for (axis, component) in triangle.normal.into_iter().enumerate() {
+                pack.normals[axis][lane] = component;
+            }
             self.wide.ids.push(triangle.id);
         }
         self.wide.packs.push(pack);

@@ -47,8 +47,6 @@ pub struct WideBvh {
     packs: Vec<Pack>,
     /// Slot of each lane of each pack.
     slots: Vec<u32>,
-    /// Normal of each lane of each pack; apart from the corners, because few lanes need it.
-    normals: Vec<[f32; 4]>,
     /// Triangle id of each lane of each pack.
     ids: Vec<u32>,
 }
@@ -60,7 +58,6 @@ impl WideBvh {
         let bytes = size_of_val(self.nodes.as_slice())
             + size_of_val(self.packs.as_slice())
             + size_of_val(self.slots.as_slice())
-            + size_of_val(self.normals.as_slice())
             + size_of_val(self.ids.as_slice());
         (self.nodes.len(), self.packs.len(), bytes)
     }

@@ -6,7 +6,7 @@ use super::{MAX_STACK, NO_SLOT, Node, Pack, SlotHit, Visits, WideBvh};
 use crate::simd::{Lanes, Portable, Width};
 use glam::Vec3;
 use std::mem::MaybeUninit;
-use twinlight_core::transport::intersect::{RayFrame, ray_frame, triangle_t};
+use twinlight_core::transport::intersect::ray_frame;
 
 /// Children still to visit: the entry parameter's bits above, the reference below. Entries are not negative, so the
 /// order of the integers is the order of the entries.
@@ -138,7 +138,7 @@ impl WideBvh {
                 count(false);
                 let (index, pack) = self.pack(current);
                 if let Some(hits) = pack_ray.meet(width, pack, best.t) {
-                    self.improve(&mut best, &frame, t_min, index, pack, &hits);
+                    self.improve(&mut best, index, &hits);
                 }
             }
             current = loop {
@@ -174,9 +174,9 @@ impl WideBvh {
             let (mask, _) = node_ray.meet(width, node, t_max);
             let mut packs = mask & node.packs;
             while packs != 0 {
-                let (index, pack) = self.pack(take_child(node, &mut packs));
+                let (_, pack) = self.pack(take_child(node, &mut packs));
                 if let Some(hits) = pack_ray.meet(width, pack, t_max)
-                    && self.any_within(&frame, index, pack, &hits, (t_min, t_max))
+                    && hits.mask != 0
                 {
                     return true;
                 }
@@ -191,65 +191,23 @@ impl WideBvh {
 
     /// Takes over what is nearer, or as near with a lower id.
     #[inline(always)]
-    fn improve<W: Width>(
-        &self,
-        best: &mut Best,
-        frame: &RayFrame,
-        t_min: f32,
-        index: u32,
-        pack: &Pack,
-        hits: &PackHits<W>,
-    ) {
+    fn improve<W: Width>(&self, best: &mut Best, index: u32, hits: &PackHits<W>) {
         let mut mask = hits.mask;
         if mask == 0 {
             return;
         }
+        let t = hits.t.to_array();
         let edges = hits.edges.map(|lanes| lanes.to_array());
         while mask != 0 {
             let i = mask.trailing_zeros() as usize & (PACK - 1);
             mask &= mask - 1;
             let lane = index * PACK as u32 + i as u32;
-            let [u, v, w] = [edges[0][i], edges[1][i], edges[2][i]];
-            let met = triangle_t(frame, self.normal(lane), pack.triangle(i), [u, v, w], t_min, best.t);
-            let Some(t) = met else { continue };
+            let (t, [u, v, w]) = (t[i], [edges[0][i], edges[1][i], edges[2][i]]);
             let tie = t == best.t && (best.lane == NO_SLOT || self.id(lane) < self.id(best.lane));
             if t < best.t || tie {
                 *best = Best { t, v, w, determinant: (u + v) + w, lane };
             }
         }
-    }
-
-    /// Whether any of the triangles that a ray may meet is met.
-    #[inline(always)]
-    fn any_within<W: Width>(
-        &self,
-        frame: &RayFrame,
-        index: u32,
-        pack: &Pack,
-        hits: &PackHits<W>,
-        (t_min, t_max): (f32, f32),
-    ) -> bool {
-        let mut mask = hits.mask;
-        if mask == 0 {
-            return false;
-        }
-        let edges = hits.edges.map(|lanes| lanes.to_array());
-        while mask != 0 {
-            let i = mask.trailing_zeros() as usize & (PACK - 1);
-            mask &= mask - 1;
-            let normal = self.normal(index * PACK as u32 + i as u32);
-            let edges = [edges[0][i], edges[1][i], edges[2][i]];
-            if triangle_t(frame, normal, pack.triangle(i), edges, t_min, t_max).is_some() {
-                return true;
-            }
-        }
-        false
-    }
-
-    #[inline(always)]
-    fn normal(&self, lane: u32) -> Vec3 {
-        let [x, y, z, _] = self.normals[lane as usize];
-        Vec3::new(x, y, z)
     }
 
     #[inline(always)]

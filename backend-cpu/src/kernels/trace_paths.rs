@@ -30,14 +30,9 @@ use twinlight_core::transport::light::{
 use twinlight_core::transport::offset::offset_origin;
 use twinlight_core::transport::surface::{Surface, camera_direction, surface_at};
 
-/// Light of one sample, split by the number of scattering vertices.
-#[derive(Debug, Clone, Copy)]
-struct PathLight {
-    /// Scattered at most once.
-    direct: Vec3,
-    /// Scattered more often.
-    indirect: Vec3,
-}
+/// Light of one sample: scattered at most once, and more often. Indexed, because a branch on the number of vertices
+/// would be mispredicted at every other vertex.
+type PathLight = [Vec3; 2];
 
 /// A path under construction.
 struct Path {
@@ -122,9 +117,13 @@ fn trace_path<W: Width>(
         throughput: Vec3::ONE,
         pdf: 0.0,
         vertices: 0,
-        light: PathLight { direct: Vec3::ZERO, indirect: Vec3::ZERO },
+        light: [Vec3::ZERO; 2],
     };
     loop {
+        // Drawn before it is known whether the ray meets anything: the processor overlaps it with the search, which is
+        // worth more than the vector wasted on a path's end.
+        let base = Sampler::first_pair(path.vertices);
+        let numbers = sampler.vertex(tracer.1, base);
         // [2] vertex: what the ray meets, and its emission
         let hit = tracer.closest(path.origin, path.direction, 0.0, FAR);
         let sphere = nearest_sphere(scene, path.origin, path.direction, hit.t);
@@ -144,8 +143,6 @@ fn trace_path<W: Width>(
         if path.vertices == params.max_bounces {
             return path.light;
         }
-        let base = Sampler::first_pair(path.vertices);
-        let numbers = sampler.vertex(tracer.1, base);
         let (tangent, bitangent) = basis(surface.shading_normal);
         let to_viewer = -path.direction;
         let wo = Vec3::new(
@@ -182,11 +179,7 @@ fn trace_path<W: Width>(
 /// Adds light that has been scattered `order` times.
 #[inline(always)]
 fn add_light(light: &mut PathLight, order: u32, radiance: Vec3) {
-    if order <= 1 {
-        light.direct += radiance;
-    } else {
-        light.indirect += radiance;
-    }
+    light[usize::from(order > 1)] += radiance;
 }
 
 /// Balance-heuristic weight of a technique with density `own` against one with density `other`.
@@ -330,11 +323,11 @@ fn survives(path: &mut Path, params: &TracePathsParams, number: f32) -> bool {
 
 /// Adds one sample to a pixel's sums, or counts it as rejected.
 #[inline(always)]
-fn add_sample(texel: &mut FilmTexel, light: PathLight, params: &TracePathsParams) {
+fn add_sample(texel: &mut FilmTexel, [direct, indirect]: PathLight, params: &TracePathsParams) {
     let exponent = params.film_exponent;
-    let direct = [light.direct.x, light.direct.y, light.direct.z].map(|x| from_float(x, exponent));
-    let indirect = [light.indirect.x, light.indirect.y, light.indirect.z].map(|x| from_float(x, exponent));
-    let sum = light.direct + light.indirect;
+    let sum = direct + indirect;
+    let direct = direct.to_array().map(|x| from_float(x, exponent));
+    let indirect = indirect.to_array().map(|x| from_float(x, exponent));
     let luminance = (0.2126 * sum.x + 0.7152 * sum.y) + 0.0722 * sum.z;
     let squared = from_float(luminance * luminance, params.moment_exponent);
     let out_of_range = |w: &Words| *w == OUT_OF_RANGE;

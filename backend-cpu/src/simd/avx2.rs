@@ -4,9 +4,9 @@ use super::avx2_words::U8;
 use super::sse2::F4;
 use super::{Kernel, LaneMask, Lanes, Width};
 use std::arch::x86_64::{
-    __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_cmp_ps, _mm256_div_ps,
-    _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps,
-    _mm256_set1_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
+    __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_blendv_ps,
+    _mm256_cmp_ps, _mm256_div_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
+    _mm256_mul_ps, _mm256_or_ps, _mm256_set1_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
 
@@ -106,6 +106,11 @@ impl Lanes for F8 {
         out
     }
     #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: lanes exist, so the processor has AVX2.
+        F8(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+    #[inline(always)]
     fn minimum(self, other: Self) -> Self {
         // SAFETY: lanes exist, so the processor has AVX2.
         F8(unsafe { _mm256_min_ps(self.0, other.0) })
@@ -114,6 +119,11 @@ impl Lanes for F8 {
     fn maximum(self, other: Self) -> Self {
         // SAFETY: lanes exist, so the processor has AVX2.
         F8(unsafe { _mm256_max_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn select(self, mask: M8, other: Self) -> Self {
+        // SAFETY: lanes exist, so the processor has AVX2.
+        F8(unsafe { _mm256_blendv_ps(other.0, self.0, mask.0) })
     }
     #[inline(always)]
     fn lt(self, other: Self) -> M8 {

@@ -46,10 +46,16 @@ pub trait Lanes:
     fn load(token: Self::Token, from: &Self::Array) -> Self;
     /// Lanes to memory.
     fn to_array(self) -> Self::Array;
+    /// Magnitudes.
+    #[must_use]
+    fn abs(self) -> Self;
     /// `self < other ? self : other`.
     fn minimum(self, other: Self) -> Self;
     /// `self > other ? self : other`.
     fn maximum(self, other: Self) -> Self;
+    /// `self` where the mask holds, else `other`.
+    #[must_use]
+    fn select(self, mask: Self::Mask, other: Self) -> Self;
     /// `self < other`; false where either is NaN.
     fn lt(self, other: Self) -> Self::Mask;
     /// `self <= other`; false where either is NaN.

@@ -47,12 +47,20 @@ impl<L: Lanes<Array = [f32; 4]>> Lanes for Pair<L> {
         [a, b, c, d, e, f, g, h]
     }
     #[inline(always)]
+    fn abs(self) -> Self {
+        Pair(self.0.abs(), self.1.abs())
+    }
+    #[inline(always)]
     fn minimum(self, other: Self) -> Self {
         Pair(self.0.minimum(other.0), self.1.minimum(other.1))
     }
     #[inline(always)]
     fn maximum(self, other: Self) -> Self {
         Pair(self.0.maximum(other.0), self.1.maximum(other.1))
+    }
+    #[inline(always)]
+    fn select(self, mask: Self::Mask, other: Self) -> Self {
+        Pair(self.0.select(mask.0, other.0), self.1.select(mask.1, other.1))
     }
     #[inline(always)]
     fn lt(self, other: Self) -> Self::Mask {

@@ -84,12 +84,20 @@ impl<const N: usize> Lanes for Array<N> {
         self.0
     }
     #[inline(always)]
+    fn abs(self) -> Self {
+        Array(self.0.map(f32::abs))
+    }
+    #[inline(always)]
     fn minimum(self, other: Self) -> Self {
         self.zip(other, |a, b| if a < b { a } else { b })
     }
     #[inline(always)]
     fn maximum(self, other: Self) -> Self {
         self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn select(self, mask: Bits, other: Self) -> Self {
+        Array(std::array::from_fn(|i| if mask.0 >> i & 1 == 1 { self.0[i] } else { other.0[i] }))
     }
     #[inline(always)]
     fn lt(self, other: Self) -> Bits {

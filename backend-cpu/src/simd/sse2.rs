@@ -3,8 +3,9 @@
 use super::pair::Pair;
 use super::{LaneMask, Lanes, Width, words};
 use std::arch::x86_64::{
-    __m128, _mm_add_ps, _mm_and_ps, _mm_cmple_ps, _mm_cmplt_ps, _mm_div_ps, _mm_loadu_ps, _mm_max_ps,
-    _mm_min_ps, _mm_movemask_ps, _mm_mul_ps, _mm_or_ps, _mm_set1_ps, _mm_storeu_ps, _mm_sub_ps, _mm_xor_ps,
+    __m128, _mm_add_ps, _mm_and_ps, _mm_andnot_ps, _mm_cmple_ps, _mm_cmplt_ps, _mm_div_ps, _mm_loadu_ps,
+    _mm_max_ps, _mm_min_ps, _mm_movemask_ps, _mm_mul_ps, _mm_or_ps, _mm_set1_ps, _mm_storeu_ps, _mm_sub_ps,
+    _mm_xor_ps,
 };
 use std::marker::PhantomData;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Sub};
@@ -86,6 +87,11 @@ impl<W: Copy> Lanes for F4<W> {
         out
     }
     #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: x86-64 has SSE2.
+        F4(unsafe { _mm_andnot_ps(_mm_set1_ps(-0.0), self.0) }, PhantomData)
+    }
+    #[inline(always)]
     fn minimum(self, other: Self) -> Self {
         // SAFETY: x86-64 has SSE2.
         F4(unsafe { _mm_min_ps(self.0, other.0) }, PhantomData)
@@ -94,6 +100,11 @@ impl<W: Copy> Lanes for F4<W> {
     fn maximum(self, other: Self) -> Self {
         // SAFETY: x86-64 has SSE2.
         F4(unsafe { _mm_max_ps(self.0, other.0) }, PhantomData)
+    }
+    #[inline(always)]
+    fn select(self, mask: M4, other: Self) -> Self {
+        // SAFETY: x86-64 has SSE2.
+        F4(unsafe { _mm_or_ps(_mm_and_ps(mask.0, self.0), _mm_andnot_ps(mask.0, other.0)) }, PhantomData)
     }
     #[inline(always)]
     fn lt(self, other: Self) -> M4 {

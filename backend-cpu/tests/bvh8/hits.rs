@@ -5,7 +5,10 @@ use glam::Vec3;
 use twinlight_backend_cpu::bvh8::WideBvh;
 use twinlight_core::bvh::Bvh;
 use twinlight_core::kernels::trace::Ray;
+use twinlight_core::math::trig::sin_cos_turns;
+use twinlight_core::math::vector::basis;
 use twinlight_core::scene::CompiledScene;
+use twinlight_core::transport::offset::offset_origin;
 
 fn ray(origin: Vec3, direction: Vec3) -> Ray {
     Ray { origin: origin.into(), t_min: 0.0, direction: direction.into(), t_max: f32::INFINITY }
@@ -69,6 +72,46 @@ fn slivers() {
     rays.extend(random_rays(1000, 1.5, 5));
     let hits = assert_hits_are_least("slivers", &scene, &rays);
     assert!(hits > 100, "{hits}");
+}
+
+/// The wall of a pipe of that radius and of length 1 about an axis, in rings of needles.
+fn pipe(radius: f32, axis: Vec3, foot: Vec3) -> Vec<[Vec3; 3]> {
+    const FACETS: u32 = 24;
+    const RINGS: u32 = 6;
+    let (tangent, bitangent) = basis(axis);
+    let corner = |facet: u32, ring: u32| {
+        let (sine, cosine) = sin_cos_turns(facet as f32 / FACETS as f32);
+        foot + axis * (ring as f32 / RINGS as f32) + (tangent * cosine + bitangent * sine) * radius
+    };
+    let quad = |facet: u32, ring: u32| {
+        let [a, b, c, d] = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(f, r)| corner(facet + f, ring + r));
+        [[a, b, c], [a, c, d]]
+    };
+    (0..RINGS).flat_map(|ring| (0..FACETS).flat_map(move |facet| quad(facet, ring))).collect()
+}
+
+/// Rays along pipes of needles, from their walls: they pass so close over the facets ahead that rounding of the edge
+/// functions is a large part of what is left of them.
+#[test]
+fn rays_along_pipes_of_needles() {
+    let mut random = Random::new(7);
+    for radius in [1e-2, 1e-4, 1e-5, 1e-6] {
+        let axis = random.direction();
+        let scene = scene_of_triangles(&pipe(radius, axis, random.vector()));
+        let mut rays = Vec::new();
+        for triangle in &scene.triangles {
+            let [p0, p1, p2] = [triangle.p0, triangle.p1, triangle.p2].map(Vec3::from);
+            let normal = Vec3::from(triangle.normal);
+            for k in 0..24 {
+                let (u, v) = (random.unit() * 0.5, random.unit() * 0.5);
+                let position = (p0 * ((1.0 - u) - v) + p1 * u) + p2 * v;
+                let direction = axis + random.vector() * [radius, 1e-1 * radius, 1e-6][k % 3];
+                rays.push(ray(offset_origin(position, triangle.offset, normal, direction), direction));
+            }
+        }
+        let hits = assert_hits_are_least(&format!("pipe of {radius}"), &scene, &rays);
+        assert!(hits > 50, "{hits}");
+    }
 }
 
 #[test]

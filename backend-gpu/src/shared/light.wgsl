@@ -91,10 +91,9 @@ fn no_light(light: u32) -> LightSample {
 fn sample_triangle(index: u32, receiver: vec3<f32>, u: f32, v: f32) -> LightSample {
     let light = lights[index];
     // Heitz 2019: a low-distortion map from the square to the triangle.
-    let lower = v > u;
-    let halved = select(v, u, lower) * 0.5f;
-    let b0 = select(u - halved, halved, lower);
-    let b1 = select(halved, v - halved, lower);
+    let halved = smaller(u, v) * 0.5f;
+    let b0 = u - halved;
+    let b1 = v - halved;
     let a = triangles[light.triangle].p0 * ((1.0f - b0) - b1);
     let b = triangles[light.triangle].p1 * b0;
     let c = triangles[light.triangle].p2 * b1;

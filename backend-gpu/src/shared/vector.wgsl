@@ -49,13 +49,7 @@ fn concentric_disc(u: f32, v: f32) -> vec2<f32> {
     }
     let horizontal = abs(x) > abs(y);
     let radius = select(y, x, horizontal);
-    // Only one of the two quotients is defined where a coordinate is 0.
-    var ratio: f32;
-    if horizontal {
-        ratio = y / x;
-    } else {
-        ratio = x / y;
-    }
+    let ratio = select(x, y, horizontal) / radius;
     let sc = sin_cos_octant(ratio * FRAC_PI_4);
     // Around the vertical axis the angle counts from that axis, which exchanges sine and cosine.
     if horizontal {

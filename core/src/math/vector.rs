@@ -30,6 +30,12 @@ pub fn to_world(t: Vec3, b: Vec3, n: Vec3, v: Vec3) -> Vec3 {
     t * v.x + b * v.y + n * v.z
 }
 
+/// `a` where the mask is all ones, `b` where it is 0.
+#[inline(always)]
+fn pick(mask: u32, a: f32, b: f32) -> f32 {
+    f32::from_bits((a.to_bits() & mask) | (b.to_bits() & !mask))
+}
+
 /// The point of the unit disc for a point of the unit square (Shirley & Chiu 1997), area-preserving.
 #[inline(always)]
 pub fn concentric_disc(u: f32, v: f32) -> (f32, f32) {
@@ -38,12 +44,13 @@ pub fn concentric_disc(u: f32, v: f32) -> (f32, f32) {
     if x == 0.0 && y == 0.0 {
         return (0.0, 0.0);
     }
-    let horizontal = x.abs() > y.abs();
-    let radius = if horizontal { x } else { y };
-    let ratio = if horizontal { y / x } else { x / y };
+    // All ones where |x| > |y|, else 0: compilers make a branch of the comparison, mispredicted every other time.
+    let horizontal = ((y.abs() - x.abs()).to_bits() as i32 >> 31) as u32;
+    let radius = pick(horizontal, x, y);
+    let ratio = pick(horizontal, y, x) / radius;
     let (s, c) = sin_cos_octant(ratio * FRAC_PI_4);
     // Around the vertical axis the angle counts from that axis, which exchanges sine and cosine.
-    if horizontal { (radius * c, radius * s) } else { (radius * s, radius * c) }
+    (radius * pick(horizontal, c, s), radius * pick(horizontal, s, c))
 }
 
 #[cfg(test)]

@@ -158,7 +158,7 @@ fn plane_t(frame: &RayFrame, normal: Vec3, [a, b, c]: [Vec3; 3], t_edge: f32) ->
 
 /// Conditions 2 to 4 of [`crate::kernels::trace`] for a triangle whose `edges` U, V, W let the ray through: t.
 #[inline(always)]
-pub fn triangle_t(
+fn triangle_t(
     frame: &RayFrame,
     normal: Vec3,
     [p0, p1, p2]: [Vec3; 3],

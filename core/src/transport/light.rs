@@ -2,7 +2,7 @@
 //! `backend-gpu/src/shared/light.wgsl`.
 
 use super::environment::sample_environment;
-use super::intersect::sphere;
+use super::intersect::{smaller, sphere};
 use super::offset::offset_origin;
 use super::{PI, SceneView};
 use crate::math::hash::to_index;
@@ -138,10 +138,9 @@ fn sample_triangle(scene: &SceneView<'_>, index: u32, from: Vec3, u: f32, v: f32
     let light = &scene.lights[index as usize];
     let triangle = &scene.triangles[light.triangle as usize];
     // Heitz 2019: a low-distortion map from the square to the triangle.
-    let lower = v > u;
-    let half = (if lower { u } else { v }) * 0.5;
-    let b0 = if lower { half } else { u - half };
-    let b1 = if lower { v - half } else { half };
+    let half = smaller(u, v) * 0.5;
+    let b0 = u - half;
+    let b1 = v - half;
     let a = Vec3::from(triangle.p0) * ((1.0 - b0) - b1);
     let b = Vec3::from(triangle.p1) * b0;
     let c = Vec3::from(triangle.p2) * b1;
