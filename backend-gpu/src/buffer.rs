@@ -3,11 +3,16 @@
 use crate::device::GpuDevice;
 use bytemuck::Pod;
 use std::marker::PhantomData;
+use std::ops::Range;
 use std::sync::mpsc;
 use twinlight_core::{Error, Result};
 
 /// Bindings must not be empty, and 16 bytes keep every element type of ours aligned.
 const GRANULE: u64 = 16;
+
+/// Runs of elements are bound from multiples of this on: elements are whole words, so that is a multiple of the 256 bytes that
+/// WebGPU lets adapters ask of an offset.
+pub(crate) const CHUNK_GRAIN: usize = 64;
 
 /// `len` elements of `T` on one device.
 #[derive(Debug)]
@@ -19,11 +24,14 @@ pub struct GpuBuffer<T> {
     element: PhantomData<T>,
 }
 
-/// A buffer without its element type, as a kernel's binding.
+/// A buffer, or a run of its elements, without its element type: a kernel's binding.
 #[derive(Debug, Clone, Copy)]
 pub struct BufferRef<'a> {
     pub(crate) raw: &'a wgpu::Buffer,
     pub(crate) owner: u64,
+    /// First byte.
+    pub(crate) offset: u64,
+    pub(crate) bytes: u64,
 }
 
 impl<T: Pod> GpuBuffer<T> {
@@ -39,8 +47,32 @@ impl<T: Pod> GpuBuffer<T> {
 
     /// For [`crate::dispatch::Recorder::dispatch`].
     pub fn binding(&self) -> BufferRef<'_> {
-        BufferRef { raw: &self.raw, owner: self.owner }
+        BufferRef { raw: &self.raw, owner: self.owner, offset: 0, bytes: self.raw.size() }
     }
+
+    /// `elements` alone, which the kernel sees from index 0 on. They begin at a multiple of [`CHUNK_GRAIN`].
+    pub(crate) fn binding_of(&self, elements: Range<usize>) -> BufferRef<'_> {
+        debug_assert!(elements.start.is_multiple_of(CHUNK_GRAIN) && elements.end <= self.len);
+        let size = size_of::<T>() as u64;
+        let offset = elements.start as u64 * size;
+        let bytes = (elements.len() as u64 * size).next_multiple_of(GRANULE);
+        BufferRef { raw: &self.raw, owner: self.owner, offset, bytes }
+    }
+}
+
+impl GpuDevice {
+    /// How many elements of `size` bytes one binding holds, in whole grains.
+    pub(crate) fn elements_per_binding(&self, size: usize) -> usize {
+        let most = self.report().limits.storage_binding_bytes / size.max(1) as u64;
+        usize::try_from(most).unwrap_or(usize::MAX) / CHUNK_GRAIN * CHUNK_GRAIN
+    }
+}
+
+/// `0..len` in runs of at most `most` elements, which is a multiple of [`CHUNK_GRAIN`]. Where a binding holds not even a
+/// grain, that is one run: binding it tells the caller about the limit.
+pub(crate) fn chunks(len: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
+    let step = if most == 0 { len.max(1) } else { most };
+    (0..len).step_by(step).map(move |begin| begin..len.min(begin + step))
 }
 
 impl GpuDevice {

@@ -134,7 +134,7 @@ impl<'a> Recorder<'a> {
 
     fn expect_bindable(&self, name: &str, buffer: BufferRef<'_>) -> Result<()> {
         self.device.expect_own(buffer)?;
-        let (bytes, limit) = (buffer.raw.size(), self.device.report().limits.storage_binding_bytes);
+        let (bytes, limit) = (buffer.bytes, self.device.report().limits.storage_binding_bytes);
         if bytes > limit {
             let what = format!("bytes of {name} in one binding on {}", self.device.report().name);
             return Err(Error::limit(what, bytes, limit));
@@ -162,7 +162,11 @@ impl Step<'_> {
         });
         let storage = self.buffers.iter().map(|(binding, buffer)| wgpu::BindGroupEntry {
             binding: *binding,
-            resource: buffer.raw.as_entire_binding(),
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: buffer.raw,
+                offset: buffer.offset,
+                size: std::num::NonZeroU64::new(buffer.bytes),
+            }),
         });
         let entries: Vec<_> = uniform.into_iter().chain(storage).collect();
         device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -89,9 +89,9 @@ fn twins() -> Vec<Twins> {
                     call,
                     environment,
                     loop_rounds,
-                    padding_a,
-                    padding_b,
-                    padding_c,
+                    pixel_begin,
+                    pixel_count,
+                    padding,
                 }),
                 layout!(shade_contract::ShadePrimaryParams { camera, width, height, padding }),
                 layout!(shade_contract::GBufferTexel {
@@ -116,7 +116,7 @@ fn twins() -> Vec<Twins> {
                     segment,
                     alive_word,
                     loop_rounds,
-                    padding,
+                    film_begin,
                 }),
                 layout!(trace_paths::PathState {
                     origin,

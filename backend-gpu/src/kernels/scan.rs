@@ -5,12 +5,13 @@
 // oracle conformance/src/oracle/scan.rs
 //! Host side of `scan`.
 
-use crate::buffer::{BufferRef, GpuBuffer};
+use crate::buffer::{BufferRef, CHUNK_GRAIN, GpuBuffer, chunks};
 use crate::device::GpuDevice;
 use crate::dispatch::Recorder;
 use crate::pipeline::Pipeline;
 use crate::source::{KernelSource, WgslFile};
 use bytemuck::{Pod, Zeroable};
+use std::ops::Range;
 use std::sync::Arc;
 use twinlight_core::kernels::scan::MAX_LEN;
 use twinlight_core::{Error, Result};
@@ -55,26 +56,37 @@ impl Scan {
         })
     }
 
-    /// Records the scan of `count` elements. `tile_sums` has a tile's sum per element and one element more, which
-    /// receives the total.
+    /// Records the scan of the first `count` elements, in parts of `most` or fewer, as [`chunk`] gives it. `tile_sums` has
+    /// a tile's sum per element and one element more, which receives the total.
     ///
     /// # Errors
     /// As [`Recorder::dispatch`].
     pub fn record<'a>(
         &self,
         recorder: &mut Recorder<'a>,
-        count: u32,
-        input: BufferRef<'a>,
-        tile_sums: BufferRef<'a>,
-        output: BufferRef<'a>,
+        input: &'a GpuBuffer<u32>,
+        tile_sums: &'a GpuBuffer<u32>,
+        output: &'a GpuBuffer<u32>,
+        (count, most): (usize, usize),
     ) -> Result<()> {
-        let tile_count = count.div_ceil(TILE_SIZE);
-        let params = ScanParams { count, tile_count };
-        let buffers = [("input", input), ("tile_sums", tile_sums)];
-        recorder.dispatch("sum every tile", &self.reduce_tiles, &params, &buffers, tile_count)?;
-        self.record_in_place(recorder, tile_count, tile_sums)?;
-        let buffers = [("input", input), ("tile_sums", tile_sums), ("output", output)];
-        recorder.dispatch("scan every tile", &self.scan_tiles, &params, &buffers, tile_count)
+        let part = |elements: Range<usize>| {
+            let tiles = elements.start / TILE_SIZE as usize..elements.end.div_ceil(TILE_SIZE as usize);
+            let params = ScanParams { count: elements.len() as u32, tile_count: tiles.len() as u32 };
+            let read =
+                [("input", input.binding_of(elements.clone())), ("tile_sums", tile_sums.binding_of(tiles))];
+            (params, read, ("output", output.binding_of(elements)))
+        };
+        for elements in chunks(count, most) {
+            let (params, read, _) = part(elements);
+            recorder.dispatch("sum every tile", &self.reduce_tiles, &params, &read, params.tile_count)?;
+        }
+        self.record_in_place(recorder, count.div_ceil(TILE_SIZE as usize) as u32, tile_sums.binding())?;
+        for elements in chunks(count, most) {
+            let (params, [input, tile_sums], output) = part(elements);
+            let buffers = [input, tile_sums, output];
+            recorder.dispatch("scan every tile", &self.scan_tiles, &params, &buffers, params.tile_count)?;
+        }
+        Ok(())
     }
 
     /// Records the scan of a short buffer by one workgroup, in place; element `count` receives the total.
@@ -92,10 +104,16 @@ impl Scan {
     }
 }
 
+/// Elements that one part of a scan may have: whole tiles, whose sums begin at a grain too.
+pub fn chunk(device: &GpuDevice) -> usize {
+    let step = TILE_SIZE as usize * CHUNK_GRAIN;
+    device.elements_per_binding(size_of::<u32>()) / step * step
+}
+
 /// Runs the kernel; see the contract.
 ///
 /// # Errors
-/// [`Error::InvalidInput`] when the lengths differ, [`Error::LimitExceeded`] beyond [`MAX_LEN`] or a binding's size.
+/// [`Error::InvalidInput`] when the lengths differ, [`Error::LimitExceeded`] beyond [`MAX_LEN`].
 pub fn run(device: &GpuDevice, input: &GpuBuffer<u32>, output: &mut GpuBuffer<u32>) -> Result<u32> {
     if input.len() != output.len() {
         return Err(Error::invalid("scan", format!("{} inputs, {} outputs", input.len(), output.len())));
@@ -106,12 +124,11 @@ pub fn run(device: &GpuDevice, input: &GpuBuffer<u32>, output: &mut GpuBuffer<u3
     if input.is_empty() {
         return Ok(0);
     }
-    let count = input.len() as u32;
     let scan = Scan::new(device)?;
-    let tile_count = count.div_ceil(TILE_SIZE) as usize;
+    let tile_count = input.len().div_ceil(TILE_SIZE as usize);
     let tile_sums = device.zeroed::<u32>(tile_count + 1)?;
     let mut recorder = device.record("scan counts into offsets");
-    scan.record(&mut recorder, count, input.binding(), tile_sums.binding(), output.binding())?;
+    scan.record(&mut recorder, input, &tile_sums, output, (input.len(), chunk(device)))?;
     recorder.run()?;
     Ok(device.download_range(&tile_sums, tile_count, 1)?[0])
 }

@@ -5,7 +5,7 @@
 // oracle conformance/src/oracle/shade_primary.rs
 //! Host side of `shade_primary`.
 
-use crate::buffer::GpuBuffer;
+use crate::buffer::{GpuBuffer, chunks};
 use crate::device::GpuDevice;
 use crate::kernels::status;
 use crate::scene::GpuScene;
@@ -52,18 +52,18 @@ pub struct ShadePrimaryBlock {
     pub environment: EnvironmentHeader,
     /// For `loops_run`.
     pub loop_rounds: u32,
+    /// The pixels of the dispatch; `gbuffer` begins with the first of them.
+    pub pixel_begin: u32,
+    /// How many.
+    pub pixel_count: u32,
     /// Unused, 0.
-    pub padding_a: u32,
-    /// Unused, 0.
-    pub padding_b: u32,
-    /// Unused, 0.
-    pub padding_c: u32,
+    pub padding: u32,
 }
 
 /// Fills a G-buffer; see the contract.
 ///
 /// # Errors
-/// [`Error::InvalidInput`] when the buffer has another size, [`Error::LimitExceeded`] beyond a binding's size,
+/// [`Error::InvalidInput`] when the buffer has another size, [`Error::LimitExceeded`] beyond 2³² pixels,
 /// [`Error::Unsupported`] when the driver ends loops early.
 pub fn run(
     device: &GpuDevice,
@@ -85,17 +85,21 @@ pub fn run(
         u32::try_from(pixels).map_err(|_| Error::limit("pixels of one call", pixels, u32::MAX.into()))?;
     let pipeline = device.pipeline(&SOURCE, "shade_primary")?;
     let status = status::new(device)?;
-    let block = ShadePrimaryBlock {
-        call: *params,
-        environment: scene.environment,
-        loop_rounds: status::LOOP_ROUNDS,
-        padding_a: 0,
-        padding_b: 0,
-        padding_c: 0,
-    };
-    let buffers = scene.buffers_and(&[("gbuffer", gbuffer.binding()), ("status", status.binding())]);
     let mut recorder = device.record("shade what the camera sees");
-    recorder.dispatch("shade", &pipeline, &block, &buffers, pixels.div_ceil(WORKGROUP_SIZE))?;
+    for chunk in chunks(pixels as usize, device.elements_per_binding(size_of::<GBufferTexel>())) {
+        let block = ShadePrimaryBlock {
+            call: *params,
+            environment: scene.environment,
+            loop_rounds: status::LOOP_ROUNDS,
+            pixel_begin: chunk.start as u32,
+            pixel_count: chunk.len() as u32,
+            padding: 0,
+        };
+        let workgroups = block.pixel_count.div_ceil(WORKGROUP_SIZE);
+        let buffers =
+            scene.buffers_and(&[("gbuffer", gbuffer.binding_of(chunk)), ("status", status.binding())]);
+        recorder.dispatch("shade", &pipeline, &block, &buffers, workgroups)?;
+    }
     recorder.run()?;
     status::read(device, &status, "shade_primary")?;
     Ok(())

@@ -20,9 +20,10 @@ struct ShadePrimaryBlock {
     environment: EnvironmentHeader,
     // For loops_run.
     loop_rounds: u32,
-    padding_a: u32,
-    padding_b: u32,
-    padding_c: u32,
+    // The pixels of this dispatch; `gbuffer` begins with the first of them.
+    pixel_begin: u32,
+    pixel_count: u32,
+    padding: u32,
 }
 
 struct GBufferTexel {
@@ -45,11 +46,12 @@ fn shade_primary(
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let pixel = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
-    if pixel >= params.call.width * params.call.height {
+    let index = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
+    if index >= params.pixel_count {
         return;
     }
-    gbuffer[pixel] = shade_pixel(pixel % params.call.width, pixel / params.call.width);
+    let pixel = params.pixel_begin + index;
+    gbuffer[index] = shade_pixel(pixel % params.call.width, pixel / params.call.width);
     if !loops_run(params.loop_rounds) {
         atomicStore(&status[0], 1u);
     }

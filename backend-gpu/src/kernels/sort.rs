@@ -87,8 +87,8 @@ pub fn run<K: Pod>(device: &GpuDevice, keys: &mut GpuBuffer<K>, payload: &mut Gp
             if short {
                 scan.record_in_place(&mut recorder, digit_count, digit_counts.binding())?;
             } else {
-                let sums = tile_sums.binding();
-                scan.record(&mut recorder, digit_count, digit_counts.binding(), sums, offsets)?;
+                let len = (digit_count as usize, scan::chunk(device));
+                scan.record(&mut recorder, &digit_counts, &tile_sums, &digit_offsets, len)?;
             }
             let buffers = [
                 ("keys_front", front.0),

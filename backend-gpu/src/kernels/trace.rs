@@ -5,7 +5,7 @@
 // oracle conformance/src/oracle/trace.rs
 //! Host side of `trace`.
 
-use crate::buffer::{BufferRef, GpuBuffer};
+use crate::buffer::{GpuBuffer, chunks};
 use crate::device::GpuDevice;
 use crate::kernels::status;
 use crate::scene::GpuScene;
@@ -45,7 +45,7 @@ pub struct TraceParams {
 /// Closest hits; see the contract.
 ///
 /// # Errors
-/// [`Error::InvalidInput`] when the lengths differ, [`Error::LimitExceeded`] beyond a binding's size,
+/// [`Error::InvalidInput`] when the lengths differ, [`Error::LimitExceeded`] beyond 2³² rays,
 /// [`Error::Unsupported`] when the driver ends loops early.
 pub fn closest(
     device: &GpuDevice,
@@ -53,7 +53,7 @@ pub fn closest(
     rays: &GpuBuffer<Ray>,
     hits: &mut GpuBuffer<Hit>,
 ) -> Result<()> {
-    run(device, scene, rays, "trace_closest", ("hits", hits.binding()), hits.len())
+    run(device, scene, rays, "trace_closest", ("hits", hits))
 }
 
 /// Occlusion; see the contract.
@@ -66,28 +66,34 @@ pub fn any(
     rays: &GpuBuffer<Ray>,
     occluded: &mut GpuBuffer<u32>,
 ) -> Result<()> {
-    run(device, scene, rays, "trace_any", ("blocked", occluded.binding()), occluded.len())
+    run(device, scene, rays, "trace_any", ("blocked", occluded))
 }
 
-fn run(
+fn run<T: Pod>(
     device: &GpuDevice,
     scene: &GpuScene,
     rays: &GpuBuffer<Ray>,
     entry_point: &'static str,
-    result: (&'static str, BufferRef<'_>),
-    result_len: usize,
+    (name, results): (&'static str, &GpuBuffer<T>),
 ) -> Result<()> {
-    if rays.len() != result_len {
-        return Err(Error::invalid(entry_point, format!("{} rays, {result_len} results", rays.len())));
+    if rays.len() != results.len() {
+        return Err(Error::invalid(entry_point, format!("{} rays, {} results", rays.len(), results.len())));
     }
-    let ray_count = u32::try_from(rays.len())
+    u32::try_from(rays.len())
         .map_err(|_| Error::limit("rays of one call", rays.len() as u64, u32::MAX.into()))?;
     let pipeline = device.pipeline(&SOURCE, entry_point)?;
     let status = status::new(device)?;
-    let params = TraceParams { ray_count, loop_rounds: status::LOOP_ROUNDS };
-    let buffers = scene.buffers_and(&[("rays", rays.binding()), ("status", status.binding()), result]);
     let mut recorder = device.record("trace rays");
-    recorder.dispatch(entry_point, &pipeline, &params, &buffers, ray_count.div_ceil(WORKGROUP_SIZE))?;
+    for chunk in chunks(rays.len(), device.elements_per_binding(size_of::<Ray>().max(size_of::<T>()))) {
+        let ray_count = chunk.len() as u32;
+        let params = TraceParams { ray_count, loop_rounds: status::LOOP_ROUNDS };
+        let buffers = scene.buffers_and(&[
+            ("rays", rays.binding_of(chunk.clone())),
+            ("status", status.binding()),
+            (name, results.binding_of(chunk)),
+        ]);
+        recorder.dispatch(entry_point, &pipeline, &params, &buffers, ray_count.div_ceil(WORKGROUP_SIZE))?;
+    }
     recorder.run()?;
     status::read(device, &status, entry_point)?;
     Ok(())

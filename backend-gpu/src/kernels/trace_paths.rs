@@ -5,7 +5,7 @@
 // oracle conformance/src/oracle/trace_paths.rs
 //! Host side of `trace_paths`.
 
-use crate::buffer::GpuBuffer;
+use crate::buffer::{CHUNK_GRAIN, GpuBuffer};
 use crate::device::GpuDevice;
 use crate::kernels::status;
 use crate::pipeline::Pipeline;
@@ -45,7 +45,7 @@ pub const SOURCE: KernelSource = KernelSource {
 pub const WORKGROUP_SIZE: u32 = 64;
 /// Vertices per path and dispatch; twin of the WGSL constant.
 pub const VERTICES_PER_DISPATCH: u32 = 8;
-/// Paths under way at once at most: 80 MiB of states, below the smallest binding limit.
+/// Paths under way at once at most: 80 MiB of states. Fewer where a binding holds less.
 pub const MAX_PATHS: u32 = 1 << 20;
 /// Dispatches per submission: their counts of living paths are the words of `status` behind the first.
 const SEGMENTS_PER_SUBMISSION: u32 = status::STATUS_WORDS as u32 - 1;
@@ -64,8 +64,8 @@ pub struct TracePathsBlock {
     pub alive_word: u32,
     /// For `loops_run`.
     pub loop_rounds: u32,
-    /// Unused, 0.
-    pub padding: u32,
+    /// The pixel that `film` begins with.
+    pub film_begin: u32,
 }
 
 /// Twin of the WGSL struct: a path between two dispatches.
@@ -97,8 +97,8 @@ pub struct PathState {
 /// Adds samples to a film; see the contract. After an error the film's sums are void.
 ///
 /// # Errors
-/// [`twinlight_core::Error::InvalidInput`] for parameters that don't fit the film, `LimitExceeded` beyond a binding's
-/// size, `Unsupported` when the driver ends loops early.
+/// [`twinlight_core::Error::InvalidInput`] for parameters that don't fit the film, `Unsupported` when the driver ends
+/// loops early.
 pub fn run(
     device: &GpuDevice,
     scene: &GpuScene,
@@ -109,8 +109,12 @@ pub fn run(
     if params.pixel_count == 0 || params.sample_count == 0 {
         return Ok(());
     }
-    let pixels = params.pixel_count.min(MAX_PATHS);
-    let samples = (MAX_PATHS / pixels).min(params.sample_count);
+    let max_paths =
+        (MAX_PATHS as usize).min(device.elements_per_binding(size_of::<PathState>())).max(1) as u32;
+    // A batch's texels are bound from a grain's beginning on, up to a grain less one before its first.
+    let texels = device.elements_per_binding(size_of::<FilmTexel>()).saturating_sub(CHUNK_GRAIN).max(1);
+    let pixels = params.pixel_count.min(max_paths).min(u32::try_from(texels).unwrap_or(u32::MAX));
+    let samples = (max_paths / pixels).min(params.sample_count);
     let tracer = PathTracer {
         trace_segment: device.pipeline(&SOURCE, "trace_segment")?,
         add_samples: device.pipeline(&SOURCE, "add_samples")?,
@@ -153,14 +157,17 @@ impl PathTracer<'_> {
             let count = SEGMENTS_PER_SUBMISSION.min(most - segment);
             let buffers =
                 self.scene.buffers_and(&[("paths", self.paths.binding()), ("status", status.binding())]);
-            let ends = [("paths", self.paths.binding()), ("film", film.binding())];
+            let film_begin = batch.pixel_begin as usize / CHUNK_GRAIN * CHUNK_GRAIN;
+            let film_end = (batch.pixel_begin + batch.pixel_count) as usize;
+            let texels = film.binding_of(film_begin..film_end);
+            let ends = [("paths", self.paths.binding()), ("film", texels)];
             let mut block = TracePathsBlock {
                 call: *batch,
                 environment: self.scene.environment,
                 segment,
                 alive_word: 0,
                 loop_rounds: status::LOOP_ROUNDS,
-                padding: 0,
+                film_begin: film_begin as u32,
             };
             let mut recorder = self.device.record("trace paths");
             for word in 1..=count {

@@ -41,7 +41,8 @@ struct TracePathsBlock {
     alive_word: u32,
     // For loops_run.
     loop_rounds: u32,
-    padding: u32,
+    // The pixel that `film` begins with.
+    film_begin: u32,
 }
 
 // A path under construction.
@@ -347,13 +348,13 @@ fn add_samples(
     if index >= params.call.pixel_count {
         return;
     }
-    let pixel = params.call.pixel_begin + index;
-    var texel = film[pixel];
+    let at_film = params.call.pixel_begin + index - params.film_begin;
+    var texel = film[at_film];
     for (var sample = 0u; sample < params.call.sample_count; sample++) {
         let at = sample * params.call.pixel_count + index;
         add_sample(&texel, paths[at].direct, paths[at].indirect);
     }
-    film[pixel] = texel;
+    film[at_film] = texel;
 }
 
 fn add_sample(texel: ptr<function, FilmTexel>, direct: vec3<f32>, indirect: vec3<f32>) {

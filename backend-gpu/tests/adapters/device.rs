@@ -11,7 +11,6 @@ use twinlight_core::Error;
 pub const CHECKS: &[(&str, Check)] = &[
     ("buffers keep their bytes", buffers_keep_their_bytes),
     ("a buffer beyond the limit is refused", large_buffer_is_refused),
-    ("a binding beyond the limit is refused", large_binding_is_refused),
     ("buffers of another device are refused", foreign_buffer_is_refused),
     ("lengths that differ are refused", lengths_are_checked),
     ("a destroyed device is lost, and a new one works", destroyed_device_is_lost),
@@ -48,20 +47,6 @@ fn large_buffer_is_refused(target: &Target) -> Result<(), Failed> {
         }
     }
     Ok(())
-}
-
-fn large_binding_is_refused(target: &Target) -> Result<(), Failed> {
-    let device =
-        GpuDevice::open(&DeviceOptions { max_storage_binding_bytes: 1 << 20, ..target.options.clone() })?;
-    let scan_of = |len: usize| {
-        let input = device.zeroed::<u32>(len)?;
-        scan::run(&device, &input, &mut device.zeroed::<u32>(len)?)
-    };
-    scan_of(1 << 18)?;
-    match scan_of((1 << 18) + 1) {
-        Err(Error::LimitExceeded { limit: 0x10_0000, .. }) => Ok(()),
-        other => Err(format!("{other:?}").into()),
-    }
 }
 
 fn foreign_buffer_is_refused(target: &Target) -> Result<(), Failed> {

@@ -2,6 +2,7 @@
 //!
 //! `TWINLIGHT_REQUIRE_GPU=1` turns a machine without adapters from a skip into a failure.
 
+mod chunks;
 mod device;
 mod scan;
 mod sort;
@@ -32,7 +33,8 @@ type Check = fn(&Target) -> Result<(), Failed>;
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let checks: Vec<(&str, Check)> =
-        [device::CHECKS, scan::CHECKS, sort::CHECKS, strict::CHECKS, transport::CHECKS].concat();
+        [chunks::CHECKS, device::CHECKS, scan::CHECKS, sort::CHECKS, strict::CHECKS, transport::CHECKS]
+            .concat();
     let reports = adapters();
     let mut trials = Vec::new();
     for (index, report) in reports.iter().enumerate() {
