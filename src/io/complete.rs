@@ -9,7 +9,12 @@ const LIGHT_SIZE: f64 = 0.2;
 /// Least distance to what is lit: a scene that is a single point still gets a light with an area.
 const SMALLEST: f64 = 1e-6;
 
-/// Gives a scene without a camera one that frames it, and a scene without light a rectangle beside the camera, each with
+/// Share of the whole area that must be missing on one side for the camera to be placed there. A cube without a side
+/// lacks a fifth of what is left; half of that leaves room for as much furniture as walls. Scans that are closed but for
+/// small holes stay below it.
+const OPEN: f64 = 0.1;
+
+/// Gives a scene without a camera one that frames it, from its open side if it has one, and a scene without light a rectangle beside the camera, each with
 /// a notice.
 ///
 /// The rectangle lies in the plane of the eye, just above it, and faces along the view axis: the eye stands in free
@@ -20,7 +25,7 @@ pub fn complete(scene: &mut Scene) {
     let bounds = finite_bounds(scene);
     if scene.camera.is_none() {
         let (lo, hi) = bounds.unwrap_or((DVec3::NEG_ONE, DVec3::ONE));
-        scene.camera = Some(Camera::framing((lo, hi)));
+        scene.camera = Some(Camera::framing_from((lo, hi), open_side(scene).unwrap_or(DVec3::Z)));
         scene.notices.push("no camera in the scene: one that frames it is used".into());
     }
     if scene.has_light() || bounds.is_none() {
@@ -56,13 +61,40 @@ fn beside_camera(camera: &Camera, (lo, hi): (DVec3, DVec3)) -> Option<Light> {
     })
 }
 
+/// Where most faces can be seen from: over the faces of a closed mesh, area times normal adds up to nothing; over those
+/// of an open one, to what would close it. So it points out of the open side of a room whose walls face inwards, and
+/// away from the missing bottom of an object whose walls face outwards.
+fn open_side(scene: &Scene) -> Option<DVec3> {
+    let (mut sum, mut area) = (DVec3::ZERO, 0.0);
+    for instance in &scene.instances {
+        let Some(mesh) = scene.meshes.get(instance.mesh as usize) else { continue };
+        // A mirrored placement keeps its front sides in front.
+        let sign = instance.transform.determinant().signum();
+        for triangle in &mesh.triangles {
+            let point = |v: u32| mesh.positions.get(v as usize).map(|&p| instance.transform.point(p));
+            let [a, b, c] = triangle.map(|v| point(v).unwrap_or(DVec3::NAN));
+            let facing = (b - a).cross(c - a) * (0.5 * sign);
+            // What a lenient reader drops later has no side.
+            if [a, b, c].into_iter().all(within_limit) {
+                sum += facing;
+                area += facing.length();
+            }
+        }
+    }
+    if sum.length() > OPEN * area { sum.try_normalize() } else { None }
+}
+
+fn within_limit(p: DVec3) -> bool {
+    p.is_finite() && p.abs().max_element() <= COORDINATE_LIMIT
+}
+
 /// Bounds of the vertices that are numbers within the limit: a lenient reader lets others pass.
 fn finite_bounds(scene: &Scene) -> Option<(DVec3, DVec3)> {
     let mut bounds: Option<(DVec3, DVec3)> = None;
     for instance in &scene.instances {
         let Some(mesh) = scene.meshes.get(instance.mesh as usize) else { continue };
         let points = mesh.positions.iter().map(|&p| instance.transform.point(p));
-        for p in points.filter(|p| p.is_finite() && p.abs().max_element() <= COORDINATE_LIMIT) {
+        for p in points.filter(|&p| within_limit(p)) {
             let (lo, hi) = bounds.unwrap_or((p, p));
             bounds = Some((lo.min(p), hi.max(p)));
         }

@@ -85,3 +85,47 @@ fn vertices_that_are_no_numbers_do_not_move_the_camera() {
     complete(&mut broken);
     assert_eq!(broken.camera, expected);
 }
+
+/// A cube around the origin whose quads face inwards, without those named: 0 and 1 are the sides at -X and +X, and so on.
+fn room(missing: &[usize]) -> Scene {
+    let corners: String = (0..8)
+        .map(|i| [i & 1, i >> 1 & 1, i >> 2 & 1].map(|bit| bit * 2 - 1))
+        .map(|[x, y, z]| format!("v {x} {y} {z}\n"))
+        .collect();
+    let sides = ["1 3 7 5", "2 6 8 4", "1 5 6 2", "3 4 8 7", "1 2 4 3", "5 7 8 6"];
+    let present = sides.iter().enumerate().filter(|(side, _)| !missing.contains(side));
+    let faces: String = present.map(|(_, corners)| format!("f {corners}\n")).collect();
+    read("room.obj", &(corners + &faces), &[], &LoadOptions::default()).unwrap()
+}
+
+fn eye(mut scene: Scene) -> glam::DVec3 {
+    complete(&mut scene);
+    scene.camera.unwrap().position.into()
+}
+
+#[test]
+fn an_open_room_is_seen_from_its_open_side() {
+    for side in 0..6 {
+        let sign = [-1.0, 1.0][side % 2];
+        let beyond = |eye: glam::DVec3| sign * eye[side / 2] > 0.8 * eye.length();
+        let scene = room(&[side]);
+        assert!(beyond(eye(scene.clone())), "side {side}: {}", eye(scene));
+        // What is in front stays in front.
+        let mut mirrored = room(&[side]);
+        mirrored.instances[0].transform.linear *= -1.0;
+        assert!(beyond(-eye(mirrored)), "side {side}, mirrored");
+        let mut scene = room(&[side]);
+        complete(&mut scene);
+        scene.camera.unwrap().record(16, 16, [0.0; 3]).expect("up is not along the axis");
+        assert_eq!(scene.notices[0], "no camera in the scene: one that frames it is used");
+    }
+}
+
+#[test]
+fn what_is_open_on_no_side_or_on_both_is_seen_from_the_front() {
+    let scene = room(&[]);
+    let front = Camera::framing(scene.bounds().unwrap()).position;
+    assert_eq!(eye(scene).to_array(), front);
+    assert_eq!(eye(room(&[0, 1])).to_array(), front);
+    assert_eq!(eye(room(&[5])).to_array(), front, "the front is open");
+}

@@ -19,13 +19,19 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera that sees the whole of `bounds` from a little above.
+    /// A camera that sees the whole of `bounds` from a little above, on their +Z side.
     pub fn framing(bounds: (DVec3, DVec3)) -> Self {
+        Self::framing_from(bounds, DVec3::Z)
+    }
+
+    /// A camera that sees the whole of `bounds` from the side that `side`, a unit vector, points to; a little aslant,
+    /// so that depth shows.
+    pub fn framing_from(bounds: (DVec3, DVec3), side: DVec3) -> Self {
         let center = (bounds.0 + bounds.1) * 0.5;
         let radius = ((bounds.1 - bounds.0).length() * 0.5).max(1e-6);
         let vfov_degrees: f64 = 40.0;
         let distance = radius / (vfov_degrees.to_radians() * 0.5).sin() * 1.05;
-        let eye = center + DVec3::new(0.35, 0.3, 1.0).normalize() * distance;
+        let eye = center + aslant(side).normalize() * distance;
         Self { position: eye.to_array(), target: center.to_array(), up: [0.0, 1.0, 0.0], vfov_degrees }
     }
 
@@ -83,4 +89,14 @@ impl Camera {
             padding_e: 0.0,
         })
     }
+}
+
+/// `side`, and something to the right and upwards of it.
+fn aslant(side: DVec3) -> DVec3 {
+    // Near the vertical, right and upwards turn with every rounding: from there fixed directions count.
+    if side.y.abs() > 0.9 {
+        return DVec3::new(0.35, side.y.signum(), 0.3);
+    }
+    let right = DVec3::Y.cross(side).normalize();
+    side + right * 0.35 + side.cross(right) * 0.3
 }
