@@ -44,9 +44,11 @@ fn beside_camera(camera: &Camera, (lo, hi): (DVec3, DVec3)) -> Option<Light> {
     let forward = (target - eye).try_normalize()?;
     let right = forward.cross(up).try_normalize()?;
     let up = right.cross(forward);
-    // A target may be any point on the axis; what is seen is about as far as the scene is large.
+    // A target may be any point on the axis. What is seen is behind the nearest point of the scene, not further than the
+    // scene is large; nor is it right at the eye of a camera inside.
     let extent = (hi - lo).length();
-    let distance = (target - eye).length().min(extent).max(extent * 0.25).max(SMALLEST);
+    let gap = eye.distance(eye.clamp(lo, hi));
+    let distance = eye.distance(target).clamp(gap.max(extent * 0.25), gap + extent).max(SMALLEST);
     let side = LIGHT_SIZE * distance;
     let corner = eye - right * (side * 0.5);
     let narrow = |v: DVec3| v.as_vec3().to_array();

@@ -56,6 +56,25 @@ fn a_room_keeps_its_camera_and_is_lit_inside() {
     assert!(middle.cmpgt(lo).all() && middle.cmplt(hi).all(), "{middle}");
 }
 
+/// A white surface at the target reflects about radiance 1, however far away the camera is.
+#[test]
+fn an_added_light_is_as_bright_from_afar() {
+    for (distance, to_target) in [(2.0, 2.0), (30.0, 30.0), (3e6, 3e6), (3000.0, 1.0), (3000.0, 1e9)] {
+        let mut scene = triangle();
+        let eye = [0.0, 0.0, distance];
+        let target = [0.0, 0.0, distance - to_target];
+        scene.camera = Some(Camera { position: eye, target, up: [0.0, 1.0, 0.0], vfov_degrees: 40.0 });
+        complete(&mut scene);
+        let [Light::Rectangle { edge_u, edge_v, radiance, .. }] = scene.lights[..] else {
+            panic!("{:?}", scene.lights)
+        };
+        let area = f64::from(glam::Vec3::from(edge_u).cross(edge_v.into()).length());
+        let reflected = f64::from(radiance[0]) * area / (std::f64::consts::PI * distance * distance);
+        // A target beyond the scene may be as far behind its front as the scene is large.
+        assert!((0.99..1.01 + 4.0 / distance).contains(&reflected), "{distance}, {to_target}: {reflected}");
+    }
+}
+
 #[test]
 fn nothing_to_see_is_no_failure() {
     let mut scene = Scene::default();
