@@ -10,6 +10,7 @@ use crate::srgb;
 use bytemuck::Zeroable;
 use glam::{DMat3, DVec3, Vec3};
 
+mod coincident;
 mod environment;
 mod lights;
 
@@ -21,7 +22,8 @@ const SMALLEST: f32 = 1e-30;
 ///
 /// # Errors
 /// Those of [`Scene::validate`]; [`Error::InvalidInput`] for vertices that are not finite or beyond
-/// [`COORDINATE_LIMIT`] (with [`Limits::lenient`] such triangles are dropped and counted in the notices).
+/// [`COORDINATE_LIMIT`] (with [`Limits::lenient`] such triangles are dropped and counted in the notices), and for scenes
+/// less than 2⁻³⁰ units across.
 pub fn compile(scene: &Scene, limits: &Limits) -> Result<CompiledScene> {
     scene.validate(limits)?;
     check_memory(scene, limits)?;
@@ -42,6 +44,9 @@ pub fn compile(scene: &Scene, limits: &Limits) -> Result<CompiledScene> {
         materials.push(material_record(&Material::default(), &[], &[]));
     }
 
+    check_size(&flat.corners)?;
+    flat.coincident = coincident::leave_out(&mut flat, &mut materials);
+
     let (bvh, order) = bvh::build(&flat.corners);
     let pick = |s: &u32| *s as usize;
     let mut triangles: Vec<Triangle> = order.iter().map(|s| flat.triangle(pick(s))).collect();
@@ -51,6 +56,7 @@ pub fn compile(scene: &Scene, limits: &Limits) -> Result<CompiledScene> {
     let environment = environment::append(scene, bounds, &mut words, &mut listed);
     let exponents = listed.film_exponents();
     let mut notices = flat.notices();
+    notices.extend(listed.dim());
     notices.append(&mut listed.notices);
     Ok(CompiledScene {
         triangles,
@@ -66,6 +72,21 @@ pub fn compile(scene: &Scene, limits: &Limits) -> Result<CompiledScene> {
         moment_exponent: exponents.1,
         notices,
     })
+}
+
+/// Least extent of a scene, 2⁻³⁰. Edge functions and areas are products of two lengths, depths of three: far below this
+/// size they leave the range of normal numbers, where adapters flush them and triangles are missed.
+const SMALLEST_EXTENT: f32 = 9.313_226e-10;
+
+fn check_size(corners: &[[[f32; 3]; 3]]) -> Result<()> {
+    let (low, high) = bounds_of(corners);
+    let extent = (high - low).max_element();
+    if extent > 0.0 && extent < SMALLEST_EXTENT {
+        let what =
+            format!("is {extent:e} units across, less than {SMALLEST_EXTENT:e}: choose a smaller unit");
+        return Err(Error::invalid("the scene", what));
+    }
+    Ok(())
 }
 
 fn check_memory(scene: &Scene, limits: &Limits) -> Result<()> {
@@ -103,6 +124,7 @@ struct Flat {
     dropped: usize,
     unusable_normals: usize,
     contrary_normals: usize,
+    coincident: usize,
 }
 
 fn narrow(v: DVec3) -> [f32; 3] {
@@ -194,6 +216,17 @@ impl Flat {
         }
     }
 
+    /// Keeps the triangles that `keep` says.
+    fn retain(&mut self, keep: &[bool]) {
+        fn retain<T: Copy>(values: &mut Vec<T>, keep: &[bool]) {
+            *values = values.iter().zip(keep).filter_map(|(&value, &keep)| keep.then_some(value)).collect();
+        }
+        retain(&mut self.corners, keep);
+        retain(&mut self.attributes, keep);
+        retain(&mut self.materials, keep);
+        retain(&mut self.ids, keep);
+    }
+
     fn triangle(&self, i: usize) -> Triangle {
         Triangle::new(self.corners[i], self.ids[i], self.materials[i])
     }
@@ -204,6 +237,12 @@ impl Flat {
             notices.push(format!(
                 "{} triangles with vertices that are not numbers within ±2^40 dropped",
                 self.dropped
+            ));
+        }
+        if self.coincident > 0 {
+            let n = self.coincident;
+            notices.push(format!(
+                "{n} triangles with the corners of an emissive one left out: a ray meets only one of them"
             ));
         }
         if self.unusable_normals > 0 {

@@ -1,5 +1,6 @@
 //! The reference path tracer against known answers, and its bits against every way of splitting the work.
 
+mod coincident;
 mod determinism;
 mod known_answers;
 mod metamorphic;

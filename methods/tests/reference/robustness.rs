@@ -24,6 +24,41 @@ fn t5_builtin_scenes_are_finite() {
     }
 }
 
+/// A room too small for its products of lengths is refused; one just large enough is what a room of ordinary size is.
+#[test]
+fn tiny_scenes_are_refused_or_right() {
+    let scaled = |scale: f64| {
+        let mut scene = builtin("furnace").unwrap();
+        for instance in &mut scene.instances {
+            instance.transform.linear *= scale;
+            instance.transform.translation *= scale;
+        }
+        let camera = scene.camera.as_mut().unwrap();
+        camera.position = camera.position.map(|x| x * scale);
+        camera.target = camera.target.map(|x| x * scale);
+        scene
+    };
+    let small = f64::exp2(-28.0);
+    assert!(
+        film(&scaled(small), &settings(8, 8)).radiance() == film(&scaled(1.0), &settings(8, 8)).radiance()
+    );
+    let error = compile(&scaled(small * 1e-3), &Limits::default()).unwrap_err().to_string();
+    assert!(error.contains("units across"), "{error}");
+}
+
+/// Light below the film's quanta is named.
+#[test]
+fn dim_light_is_noticed() {
+    let notices = |radiance: f32| {
+        let mut scene = Scene::default();
+        scene.add_material(Material::emitter("lamp", [radiance; 3]));
+        scene.add_mesh(twinlight_fixtures::meshes::grid(1, 1));
+        compile(&scene, &Limits::default()).unwrap().notices
+    };
+    assert!(notices(1e-11).is_empty());
+    assert!(notices(1e-20).iter().any(|notice| notice.contains("scale lights up")), "{:?}", notices(1e-20));
+}
+
 /// G9: nothing to see gives a black picture.
 #[test]
 fn g9_empty_scene_is_black() {

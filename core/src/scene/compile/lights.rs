@@ -7,6 +7,9 @@ use bytemuck::Zeroable;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
+/// Radiance of 2 to this is what the film's quanta are fitted to at least: the moments' exponent stays in range.
+const LEAST_MAGNITUDE: i32 = -40;
+
 /// Lights with their powers, until the alias table is made.
 pub(super) struct Listed {
     records: Vec<LightRecord>,
@@ -162,9 +165,21 @@ impl Listed {
     /// Film and moment exponents: quanta of 2⁻³⁶ of the brightest radiance leave 27 bits of head-room for the sum
     /// over samples; squared luminance gets 2⁻³² of its square and saturates 31 bits above it.
     pub(super) fn film_exponents(&self) -> (i32, i32) {
-        let magnitude =
-            if self.brightest > 0.0 { (self.brightest.log2().ceil() as i32).clamp(-40, 60) } else { 0 };
+        let magnitude = if self.brightest > 0.0 {
+            (self.brightest.log2().ceil() as i32).clamp(LEAST_MAGNITUDE, 60)
+        } else {
+            0
+        };
         (36 - magnitude, 32 - 2 * magnitude)
+    }
+
+    /// A notice where all light is so dim that the film's quanta don't follow it down.
+    pub(super) fn dim(&self) -> Option<String> {
+        let coarse = self.brightest > 0.0 && self.brightest < f64::from(LEAST_MAGNITUDE).exp2();
+        let radiance = self.brightest;
+        coarse.then(|| {
+            format!("the brightest light has a radiance of {radiance:e}: the film rounds it; scale lights up")
+        })
     }
 
     /// Fills in selection probabilities and the alias table (Vose 1991).
