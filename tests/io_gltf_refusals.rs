@@ -184,7 +184,7 @@ fn files_come_from_the_scene_folder_only() {
         ("https://example.org/a.bin", "https://example.org/a.bin"),
         ("%FF", "%FF"),
         ("%2e%2e/ok.bin", "../ok.bin"),
-        ("none.bin", "none.bin"),
+        ("none.bin", "file 'none.bin' can't be read"),
         ("data:application/octet-stream;base64,AAAA", "buffers[0]: claims 60 bytes, has 3"),
         ("data:application/octet-stream;base64,A*AA", "character 2 of the base64"),
         ("data:application/octet-stream,AAAA", "is not base64"),
@@ -192,6 +192,8 @@ fn files_come_from_the_scene_folder_only() {
     ] {
         let message = uri(bad).unwrap_err();
         assert!(message.contains(expected), "{bad}: {message}");
+        assert!(message.trim_start_matches("unsupported: ").starts_with("t.gltf: buffers[0]: "), "{message}");
+        assert_eq!(message.matches("t.gltf").count(), 1, "{message}");
     }
     // The same on a real folder, which has a neighbour.
     let folder = std::env::temp_dir().join(format!("twinlight-gltf-{}", std::process::id()));
@@ -235,11 +237,12 @@ fn unreadable_pictures_are_noted_or_refused() {
         let scene = parse_with(&b.gltf(), &LoadOptions::default()).unwrap();
         assert_eq!((scene.textures.len(), scene.materials[0].albedo_texture), (0, None));
         assert!(scene.notices[0].contains("textures left out"), "{:?}", scene.notices);
+        assert!(scene.notices[0].contains("t.gltf: "), "{:?}", scene.notices);
         assert!(parse_with(&b.gltf(), &strict).is_err(), "{uri}");
     }
     // Not a missing picture, but an attempt.
     b.json["images"][0]["uri"] = json!("../../secret.png");
-    assert!(refusal(&b).contains("secret.png"));
+    assert!(refusal(&b).starts_with("t.gltf: images[0]: reference '../../secret.png'"), "{}", refusal(&b));
     b.json["textures"] = json!([{}]);
     assert!(refusal(&b).contains("refers to image 4294967295 of 1"));
 }

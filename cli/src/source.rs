@@ -4,6 +4,7 @@ use crate::args::LoadArgs;
 use crate::exit::{Failure, Stage};
 use std::path::Path;
 use std::time::{Duration, Instant};
+use twinlight::Error;
 use twinlight::io::toml_scene::RenderSettings;
 use twinlight::io::{self, builtin};
 use twinlight::scene::{self, Camera, CompiledScene, Scene};
@@ -36,7 +37,8 @@ pub fn prepare(name: &str, args: &LoadArgs, camera: Option<Camera>) -> Result<Pr
     scene.camera = camera.or(scene.camera);
     io::complete(&mut scene);
     let load_time = start.elapsed();
-    let compiled = scene::compile(&scene, &args.limits()).map_err(Failure::at(Stage::Input))?;
+    let compiled = scene::compile(&scene, &args.limits())
+        .map_err(|error| Failure::Library(Stage::Input, in_file(name, error)))?;
     let compile_time = start.elapsed() - load_time;
     let mut notices = scene.notices.clone();
     notices.extend(compiled.notices.iter().cloned());
@@ -47,6 +49,14 @@ pub fn prepare(name: &str, args: &LoadArgs, camera: Option<Camera>) -> Result<Pr
         notices.push("no light in the scene: the picture is black".into());
     }
     Ok(Prepared { scene, compiled, settings, notices, load_time, compile_time })
+}
+
+/// An error about an element of a scene, which does not know what file the scene came from, with the name of the file.
+fn in_file(name: &str, error: Error) -> Error {
+    match error {
+        Error::InvalidInput { place, what } => Error::invalid(format!("{name}: {place}"), what),
+        other => other,
+    }
 }
 
 /// What output files are called after: the file name without its extension, or the builtin's name.

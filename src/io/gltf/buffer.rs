@@ -1,6 +1,7 @@
 //! Where the bytes are: buffers, views, `data:` URIs.
 
 use super::Document;
+use crate::io::resolve::refused;
 use ::gltf::json::{self, validation::USize64};
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -55,7 +56,9 @@ impl<'a> Document<'a> {
         }
         let path = format!("buffers[{}]", index.value());
         let bytes = match (&buffer.uri, self.buffers.binary) {
-            (Some(uri), _) => Cow::Owned(self.uri_bytes(uri, &path)?),
+            (Some(uri), _) => {
+                Cow::Owned(self.uri_bytes(uri, &path).map_err(|e| self.unread(e, uri, &path))?)
+            }
             (None, Some(binary)) if index.value() == 0 => Cow::Borrowed(binary),
             (None, _) => return Err(self.invalid(&path, "has no URI and is not the binary chunk of a GLB")),
         };
@@ -81,6 +84,14 @@ impl<'a> Document<'a> {
         }
         self.budget.spend(|| format!("{}: {path}", self.name), text.len() as u64, 1)?;
         base64(text.as_bytes()).map_err(|what| self.invalid(path, what))
+    }
+
+    /// An error of [`Self::uri_bytes`] as seen from the element at `path`; those about data URIs say already where they are.
+    pub fn unread(&self, error: Error, uri: &str, path: &str) -> Error {
+        if uri.starts_with("data:") {
+            return error;
+        }
+        refused(error, &format!("{}: {path}", self.name), "file", uri)
     }
 }
 

@@ -146,7 +146,10 @@ impl Document<'_> {
         let label = format!("{}: {name}", self.name);
         let decode = |bytes: &[u8]| decode_texture(bytes, &label, limits).map_err(Refused::decoding);
         let picture = match (&image.uri, image.buffer_view) {
-            (Some(uri), _) => decode(&self.uri_bytes(uri, path).map_err(Refused::reading)?),
+            (Some(uri), _) => decode(&self.uri_bytes(uri, path).map_err(|e| Refused {
+                forgivable: is_missing(&e),
+                error: self.unread(e, uri, path),
+            })?),
             (None, Some(view)) => decode(self.view(view, path).map_err(Refused::reading)?.bytes()),
             (None, None) => Err(Refused::reading(self.invalid(path, "has neither a URI nor a buffer view"))),
         }?;
@@ -165,12 +168,16 @@ struct Refused {
 
 impl Refused {
     fn reading(error: Error) -> Self {
-        Self { forgivable: matches!(error, Error::Io { .. }), error }
+        Self { forgivable: is_missing(&error), error }
     }
 
     fn decoding(error: Error) -> Self {
         Self { forgivable: !matches!(error, Error::LimitExceeded { .. }), error }
     }
+}
+
+fn is_missing(error: &Error) -> bool {
+    matches!(error, Error::Io { .. })
 }
 
 fn mean(picture: &Texture) -> Mean {
