@@ -66,8 +66,19 @@ fn twins() -> Vec<Twins> {
         },
         Twins {
             source: &sort::SOURCE,
-            structs: vec![layout!(sort::SortParams { count, tile_count, key_words, word, shift })],
+            structs: vec![layout!(sort::SortParams {
+                count,
+                tile_count,
+                key_words,
+                word,
+                shift,
+                other_count,
+                other_first,
+                window_begin,
+                window_count
+            })],
             constants: vec![
+                ("WORKGROUP_SIZE", sort::WORKGROUP_SIZE.into()),
                 ("TILE_SIZE", sort::TILE_SIZE.into()),
                 ("DIGIT_BITS", sort::DIGIT_BITS.into()),
                 ("DIGITS", sort::DIGITS.into()),

@@ -30,6 +30,12 @@ struct SortParams {
     // The word that this pass sorts by, and the digit's lowest bit in it.
     word: u32,
     shift: u32,
+    // Keys of the other chunk, and whether its equal keys go before this chunk's.
+    other_count: u32,
+    other_first: u32,
+    // The places of the result that `keys_back` and `payload_back` hold.
+    window_begin: u32,
+    window_count: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: SortParams;
@@ -39,6 +45,8 @@ struct SortParams {
 @group(0) @binding(4) var<storage, read> digit_offsets: array<u32>;
 @group(0) @binding(5) var<storage, read_write> keys_back: array<u32>;
 @group(0) @binding(6) var<storage, read_write> payload_back: array<u32>;
+@group(0) @binding(7) var<storage, read> keys_other: array<u32>;
+@group(0) @binding(8) var<storage, read_write> ranks: array<u32>;
 
 var<workgroup> tile_counts: array<atomic<u32>, 16>;
 // Bit e of the words of digit d: element e of the tile has the digit d.
@@ -140,4 +148,63 @@ fn scatter_pairs(
             payload_back[to] = payload_front[pair];
         }
     }
+}
+
+// More pairs than a binding holds are sorted in chunks. A pair's place among all is its place in its chunk and, for every
+// other chunk, the number of pairs there that go before it.
+
+// Whether a pair of the other chunk goes before one of this chunk.
+fn goes_before(other: u32, pair: u32) -> bool {
+    for (var i = params.key_words; i > 0u; i--) {
+        let theirs = keys_other[other * params.key_words + i - 1u];
+        let ours = keys_front[pair * params.key_words + i - 1u];
+        if theirs != ours {
+            return theirs < ours;
+        }
+    }
+    return params.other_first != 0u;
+}
+
+@compute @workgroup_size(256)
+fn add_ranks(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let pair = (workgroup.y * workgroups.x + workgroup.x) * WORKGROUP_SIZE + lane;
+    if pair >= params.count {
+        return;
+    }
+    var low = 0u;
+    var high = params.other_count;
+    while low < high {
+        let middle = (low + high) / 2u;
+        if goes_before(middle, pair) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    ranks[pair] += low;
+}
+
+@compute @workgroup_size(256)
+fn place_pairs(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let pair = (workgroup.y * workgroups.x + workgroup.x) * WORKGROUP_SIZE + lane;
+    if pair >= params.count {
+        return;
+    }
+    // Places before the window wrap to large numbers.
+    let to = pair + ranks[pair] - params.window_begin;
+    if to >= params.window_count {
+        return;
+    }
+    for (var i = 0u; i < params.key_words; i++) {
+        keys_back[to * params.key_words + i] = keys_front[pair * params.key_words + i];
+    }
+    payload_back[to] = payload_front[pair];
 }
