@@ -81,6 +81,8 @@ faults! {
         PathsTriangleArea "the density on emissive triangles is wrong",
         PathsSphereRadius "sphere lights are three percent too small",
         PathsHardSpot "spot lights have no falloff",
+        PathsNoOffset "bounced rays and shadow rays start on the surface and meet it",
+        PathsLongOffset "bounced rays and shadow rays start beyond what is close to the surface",
         PathsMirrorWithoutTint "mirrors reflect everything",
         PathsFixedIor "every glass has index 1.5",
         PathsWrongLobe "the lobe's shadowing is wrong",

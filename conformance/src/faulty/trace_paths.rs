@@ -25,6 +25,14 @@ pub(super) fn broken_scene(fault: Fault, scene: &CompiledScene) -> CompiledScene
             _ => {}
         }
     }
+    for triangle in &mut scene.triangles {
+        match fault {
+            Fault::PathsNoOffset => triangle.offset = 0.0,
+            // A few per cent of the triangle's extent.
+            Fault::PathsLongOffset => triangle.offset *= 2e4,
+            _ => {}
+        }
+    }
     for light in &mut scene.lights {
         match fault {
             Fault::PathsLightPdf => light.select_pdf *= 0.9,
