@@ -52,7 +52,7 @@ pub fn prepare(name: &str, args: &LoadArgs, camera: Option<Camera>) -> Result<Pr
 }
 
 /// An error about an element of a scene, which does not know what file the scene came from, with the name of the file.
-fn in_file(name: &str, error: Error) -> Error {
+pub fn in_file(name: &str, error: Error) -> Error {
     match error {
         Error::InvalidInput { place, what } => Error::invalid(format!("{name}: {place}"), what),
         other => other,

@@ -4,6 +4,7 @@ use super::{ply, toml};
 use crate::args::ConvertArgs;
 use crate::exit::{Failure, Stage};
 use crate::report;
+use crate::source::in_file;
 use std::path::Path;
 use twinlight::io::{load_with_settings, write_file};
 use twinlight::scene::{Mesh, Scene};
@@ -24,7 +25,9 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     }
     let (scene, settings) =
         load_with_settings(&args.scene, &args.load.options()).map_err(Failure::at(Stage::Input))?;
-    scene.validate(&args.load.limits()).map_err(Failure::at(Stage::Input))?;
+    scene
+        .validate(&args.load.limits())
+        .map_err(|error| Failure::Library(Stage::Input, in_file(&args.scene, error)))?;
     scene.notices.iter().for_each(|notice| report::notice(notice));
     let folder = args.output.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).map_err(|source| {

@@ -56,9 +56,7 @@ impl<'a> Document<'a> {
         }
         let path = format!("buffers[{}]", index.value());
         let bytes = match (&buffer.uri, self.buffers.binary) {
-            (Some(uri), _) => {
-                Cow::Owned(self.uri_bytes(uri, &path).map_err(|e| self.unread(e, uri, &path))?)
-            }
+            (Some(uri), _) => Cow::Owned(self.uri_bytes(uri, &path).map_err(|e| self.unread(e, uri, &path))?),
             (None, Some(binary)) if index.value() == 0 => Cow::Borrowed(binary),
             (None, _) => return Err(self.invalid(&path, "has no URI and is not the binary chunk of a GLB")),
         };

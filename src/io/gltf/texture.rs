@@ -146,10 +146,11 @@ impl Document<'_> {
         let label = format!("{}: {name}", self.name);
         let decode = |bytes: &[u8]| decode_texture(bytes, &label, limits).map_err(Refused::decoding);
         let picture = match (&image.uri, image.buffer_view) {
-            (Some(uri), _) => decode(&self.uri_bytes(uri, path).map_err(|e| Refused {
-                forgivable: is_missing(&e),
-                error: self.unread(e, uri, path),
-            })?),
+            (Some(uri), _) => decode(
+                &self
+                    .uri_bytes(uri, path)
+                    .map_err(|e| Refused { forgivable: is_missing(&e), error: self.unread(e, uri, path) })?,
+            ),
             (None, Some(view)) => decode(self.view(view, path).map_err(Refused::reading)?.bytes()),
             (None, None) => Err(Refused::reading(self.invalid(path, "has neither a URI nor a buffer view"))),
         }?;
