@@ -5,10 +5,10 @@ use crate::exit::{Failure, Stage};
 use crate::report;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
-use std::io::Read;
 use std::path::Path;
 use twinlight::Error;
 use twinlight::io::image::{LayeredImage, exr, png, read_layers, read_rgb};
+use twinlight::io::resolve::read_limited;
 use twinlight::methods::post::falsecolor::false_colour;
 use twinlight::methods::post::image::Image;
 use twinlight::methods::post::metrics::ztest::{Estimate, FORMULA, ZTest, ZTestSettings};
@@ -54,7 +54,7 @@ impl Picture {
     fn read(path: &Path) -> Result<Self, Failure> {
         let name = path.display().to_string();
         let read = || -> twinlight::Result<_> {
-            let bytes = read_file(path)?;
+            let bytes = read_limited(path, MAX_FILE_BYTES)?;
             let limits = Limits::default();
             let rgb = read_rgb(&bytes, &name, &limits)?;
             let is_exr = bytes.starts_with(&exr::MAGIC);
@@ -80,18 +80,6 @@ impl Picture {
             |pixels| Image::new(self.rgb.width(), self.rgb.height(), pixels).map_err(Failure::Pictures);
         Ok((image(mean)?, image(variance.iter().map(|&v| [v; 3]).collect())?))
     }
-}
-
-/// The bytes of a file, unless it is too large.
-fn read_file(path: &Path) -> twinlight::Result<Vec<u8>> {
-    let io = |source| Error::Io { path: path.to_path_buf(), source };
-    let file = std::fs::File::open(path).map_err(io)?;
-    let mut bytes = Vec::new();
-    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
-    if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(Error::limit(format!("{}: bytes", path.display()), bytes.len() as u64, MAX_FILE_BYTES));
-    }
-    Ok(bytes)
 }
 
 fn z_test(test: &Picture, reference: &Picture) -> Result<ZTest, Failure> {

@@ -134,7 +134,7 @@ impl Files for Resolver {
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::LimitExceeded`], [`Error::InvalidInput`] for what is not a regular file.
-pub(crate) fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>> {
+pub fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>> {
     let io = |source| Error::Io { path: path.to_path_buf(), source };
     // Asked before opening: opening a pipe would wait for a writer that may never come.
     let metadata = std::fs::metadata(path).map_err(io)?;

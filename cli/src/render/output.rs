@@ -110,8 +110,9 @@ fn format_of(path: &Path) -> Result<Format, Failure> {
 
 /// Whether a file is what [`super::sidecar::json`] writes, which may be replaced; anything else is somebody's.
 fn is_sidecar(path: &Path) -> bool {
-    let parsed =
-        std::fs::read(path).ok().and_then(|text| serde_json::from_slice::<serde_json::Value>(&text).ok());
+    // Reading a pipe would wait for a writer that may never come.
+    let text = path.is_file().then(|| std::fs::read(path).ok()).flatten();
+    let parsed = text.and_then(|text| serde_json::from_slice::<serde_json::Value>(&text).ok());
     parsed.is_some_and(|value| value.get("twinlight").is_some())
 }
 
