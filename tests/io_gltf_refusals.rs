@@ -90,6 +90,16 @@ fn numbers_near_the_largest_are_refused_with_their_place() {
 }
 
 #[test]
+fn cameras_beyond_the_limit_of_coordinates_are_refused() {
+    let mut b = square();
+    b.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]);
+    b.json["nodes"] =
+        json!([{"mesh": 0, "children": [1]}, {"camera": 0, "translation": [0, -4398046511104_i64, 0]}]);
+    let expected = "t.gltf: cameras[0]: its node places it at coordinate -4398046511104.0, ";
+    assert!(refusal(&b).starts_with(expected), "{}", refusal(&b));
+}
+
+#[test]
 fn sparse_elements_are_checked_like_others() {
     let sparse = |change: &dyn Fn(&mut Value)| {
         let mut b = square();

@@ -120,6 +120,10 @@ fn toml_errors_name_line_column_and_value() {
             "[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nfov = 3\n".into(),
             "s.toml:4:1: unknown field 'fov'",
         ),
+        (
+            "[camera]\nposition = [0, 2e12, 1]\ntarget = [0, 0, 0]\n".into(),
+            "s.toml:1:1: coordinate 2000000000000.0 of position or target is not a number within ±2^40",
+        ),
         ("[camera]\nposition = [0, 0]\ntarget = [0, 0, 0]\n".into(), "s.toml:2:12: invalid length 2"),
         ("[camera]\nposition = [0, 0, 1]\n".into(), "s.toml:1:1: missing field 'target'"),
         (

@@ -32,6 +32,12 @@ fn wrong_flags_are_2_and_say_what_is_right() {
         ("--tonemap", "filmic", "none, reinhard, aces"),
         ("--exposure", "99", "-64..=64"),
         ("-o", "picture.jpg", ".png or .exr"),
+        (
+            "--camera",
+            "2e12,0,0 0,0,0 40",
+            "2000000000000.0 of position or target is not a number within ±2^40",
+        ),
+        ("--camera", "0,0,0 0,0,-1e300 40", "-1e300 of position or target"),
     ] {
         let flag_and_value = format!("{flag}={value}");
         let arguments: Vec<&str> = if flag == "-o" { vec![flag, value] } else { vec![&flag_and_value] };

@@ -1,6 +1,6 @@
 //! The pinhole camera.
 
-use super::Scene;
+use super::{COORDINATE_LIMIT, Scene};
 use crate::error::{Error, Result};
 use crate::kernels::trace_paths::CameraRecord;
 use glam::DVec3;
@@ -45,14 +45,17 @@ impl Camera {
     ///
     /// # Errors
     /// [`Error::InvalidInput`] when the eye is the target, `up` is parallel to the axis, the field of view is outside
-    /// (0, 180) or a number is not finite.
+    /// (0, 180), a coordinate is beyond [`COORDINATE_LIMIT`] or a number is not finite.
     pub fn record(&self, width: u32, height: u32, origin: [f64; 3]) -> Result<CameraRecord> {
         let invalid = |what: String| Err(Error::invalid("camera", what));
         if width == 0 || height == 0 {
             return invalid(format!("image size {width}x{height} has no pixels"));
         }
-        let numbers = self.position.iter().chain(&self.target).chain(&self.up);
-        if let Some(bad) = numbers.chain([&self.vfov_degrees]).find(|x| !x.is_finite()) {
+        let mut points = self.position.iter().chain(&self.target);
+        if let Some(bad) = points.find(|x| !(x.abs() <= COORDINATE_LIMIT)) {
+            return invalid(format!("coordinate {bad:?} of position or target is not a number within ±2^40"));
+        }
+        if let Some(bad) = self.up.iter().chain([&self.vfov_degrees]).find(|x| !x.is_finite()) {
             return invalid(format!("{bad} is not a finite number"));
         }
         if !(self.vfov_degrees > 0.0 && self.vfov_degrees < 180.0) {

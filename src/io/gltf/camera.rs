@@ -4,7 +4,7 @@ use super::Document;
 use ::gltf::json::{self, Index};
 use glam::DVec3;
 use twinlight_core::Result;
-use twinlight_core::scene::{Camera, Transform};
+use twinlight_core::scene::{COORDINATE_LIMIT, Camera, Transform};
 
 impl Document<'_> {
     /// The camera as its node places it, looking along −Z with +Y up; `None` for an orthographic one.
@@ -27,6 +27,11 @@ impl Document<'_> {
             return Ok(None);
         }
         let position = node.translation;
+        if let Some(bad) = position.to_array().into_iter().find(|x| !(x.abs() <= COORDINATE_LIMIT)) {
+            let what =
+                format!("its node places it at coordinate {bad:?}, which is not a number within ±2^40");
+            return Err(self.invalid(&path, what));
+        }
         Ok(Some(Camera {
             position: position.to_array(),
             target: (position + forward).to_array(),
