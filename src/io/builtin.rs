@@ -13,6 +13,12 @@ pub fn names() -> &'static [(&'static str, &'static str)] {
     scenes::builtin_names()
 }
 
+/// ` (did you mean 'builtin:x'?)` for a name without the prefix, or nothing when no builtin scene is called like it.
+pub(super) fn did_you_mean(name: &str) -> String {
+    let near = text::nearest(name, names().iter().map(|&(name, _)| name));
+    near.map_or_else(String::new, |near| format!(" (did you mean '{PREFIX}{near}'?)"))
+}
+
 /// The builtin scene `name`, without the prefix.
 ///
 /// # Errors

@@ -69,6 +69,10 @@ pub(super) fn reader_of(name: &str) -> Result<Reader> {
         return Ok(*reader);
     }
     let known = READERS.map(|(e, _)| e);
-    let hint = if extension.is_empty() { String::new() } else { text::did_you_mean(&extension, known) };
+    let hint = if extension.is_empty() {
+        builtin::did_you_mean(name)
+    } else {
+        text::did_you_mean(&extension, known)
+    };
     Err(Error::Unsupported(format!("'{name}': scene files end in .{}{hint}", known.join(", ."))))
 }

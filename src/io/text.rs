@@ -16,12 +16,14 @@ pub(crate) fn shown(bytes: &[u8]) -> String {
 
 /// ` (did you mean 'x'?)` for the candidate nearest to `word`, or nothing when none is near.
 pub(crate) fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(word, candidates).map_or_else(String::new, |near| format!(" (did you mean '{near}'?)"))
+}
+
+/// The candidate nearest to `word`, when one is near.
+pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = word.chars().take(EXCERPT).collect();
-    let near = candidates.into_iter().map(|c| (distance(&word, c), c)).min();
-    match near {
-        Some((d, candidate)) if d <= 1 + word.len() / 4 => format!(" (did you mean '{candidate}'?)"),
-        _ => String::new(),
-    }
+    let (d, near) = candidates.into_iter().map(|c| (distance(&word, c), c)).min()?;
+    (d <= 1 + word.len() / 4).then_some(near)
 }
 
 /// Levenshtein distance, case ignored.

@@ -11,8 +11,13 @@ fn unknown_scenes_and_formats_are_3() {
     folder.write("method.toml", "[render]\nmethod = \"magic\"\n");
     folder.run(&["render", "method.toml"]).fails(3, "no method is called 'magic'");
     folder.write("far.obj", "v 2e12 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    let run = folder.run(&["render", "far.obj"]).fails(3, "is not a number within ±2^40");
-    assert!(run.stderr.starts_with("error: far.obj: mesh "), "{}", run.stderr);
+    for arguments in [&["render", "far.obj"][..], &["scene", "inspect", "far.obj"]] {
+        let run = folder.run(arguments).fails(3, "is not a number within ±2^40");
+        assert!(run.stderr.starts_with("error: far.obj: mesh "), "{}", run.stderr);
+    }
+    folder.run(&["render", "cornell"]).fails(3, "(did you mean 'builtin:cornell'?)");
+    folder.run(&["render", "furnance"]).fails(3, "(did you mean 'builtin:furnace'?)");
+    assert!(!folder.run(&["render", "quixotic"]).stderr.contains("did you mean"));
 }
 
 #[test]
