@@ -24,6 +24,7 @@ const MAX_FILE_BYTES: u64 = 4 << 30;
 /// # Errors
 /// [`Failure::Differs`] when a threshold or the z-test fails; unreadable pictures; pictures of different sizes.
 pub fn run(args: &CompareArgs) -> Result<(), Failure> {
+    check_error_image(args)?;
     let display = Display::new(args.tone.exposure, args.tone.tonemap).map_err(Failure::Pictures)?;
     let (test, reference) = (Picture::read(&args.test)?, Picture::read(&args.reference)?);
     let settings = CompareSettings { display, ..CompareSettings::default() };
@@ -41,6 +42,15 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     };
     report::print(&text)?;
     verdict(missed, ztest.as_ref())
+}
+
+/// Refuses another name than that of the format which is written, before anything is compared.
+fn check_error_image(args: &CompareArgs) -> Result<(), Failure> {
+    let Some(path) = &args.error_image else { return Ok(()) };
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(()),
+        _ => Err(Failure::Usage(format!("'{}': the error image is a PNG and ends in .png", path.display()))),
+    }
 }
 
 /// The pictures' radiance and, of EXR files, the layers.
