@@ -8,7 +8,8 @@ mod progress;
 mod run;
 mod sidecar;
 
-use crate::args::RenderArgs;
+use crate::args::{ModeName, ProgressMode, RenderArgs};
+use crate::device::Device;
 use crate::exit::{Failure, Stage};
 use crate::interrupt::Interrupt;
 use crate::{device, report, source};
@@ -42,6 +43,12 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let (device, unavailable) = device::open(&args.backend, args.mode, args.threads)?;
     unavailable.into_iter().for_each(&mut tell);
     let done = run::render(device, args, &prepared, &job, &interrupt, &mut tell)?;
+    if args.mode == Some(ModeName::Portable) && matches!(device, Device::Cpu(_)) {
+        tell(
+            "--mode portable is for GPUs: the CPU, which renders this, always computes as in strict mode"
+                .into(),
+        );
+    }
 
     let write_start = Instant::now();
     let pictures = layers::Pictures::new(&done.taken.film, done.gbuffer.as_deref(), display)?;

@@ -112,6 +112,15 @@ fn progress_lines_reach_one_and_never_fall() {
 
 #[test]
 fn somebodys_json_is_not_replaced() {
+#[test]
+fn a_mode_of_gpus_is_not_ignored_in_silence() {
+    let folder = Folder::new();
+    let run = folder.run(&small("builtin:furnace", &["--mode", "portable"])).ok();
+    assert!(run.stderr.contains("notice: --mode portable is for GPUs"), "{}", run.stderr);
+    let run = folder.run(&small("builtin:furnace", &["--mode", "strict"])).ok();
+    assert!(!run.stderr.contains("notice"), "{}", run.stderr);
+}
+
     let folder = Folder::new();
     folder.write("picture.json", "{\"mine\": 1}");
     let run = folder.run(&small("builtin:furnace", &["-o", "picture.png"]));
