@@ -31,6 +31,11 @@ pub fn notice(text: &str) {
     let _ = writeln!(stderr(), "notice: {text}");
 }
 
+/// Says on stderr how it went; nobody reading is no error.
+pub fn status(text: &str) {
+    let _ = writeln!(stderr(), "{text}");
+}
+
 /// Says on stderr why the command failed and what might help.
 pub fn failure(failure: &Failure) {
     let mut err = stderr().lock();

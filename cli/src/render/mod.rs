@@ -7,6 +7,7 @@ mod passes;
 mod progress;
 mod run;
 mod sidecar;
+mod summary;
 
 use crate::args::{ModeName, ProgressMode, RenderArgs};
 use crate::device::Device;
@@ -56,6 +57,9 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let times = sidecar::Times { write: write_start.elapsed(), total: start.elapsed() };
     outputs.write_sidecar(&sidecar::json(args, &prepared, &job, &done, &outputs, &notices, &times))?;
     report::print(&outputs.list())?;
+    if matches!(args.progress, ProgressMode::Auto | ProgressMode::Plain) {
+        report::status(&summary::line(&done));
+    }
     match (done.taken.lost, done.taken.stop) {
         (Some(lost), _) => Err(Failure::Library(Stage::Device, lost)),
         (None, Stop::Signal(signal)) => Err(Failure::Signal(signal)),

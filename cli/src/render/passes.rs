@@ -47,6 +47,20 @@ pub struct Taken {
     pub lost: Option<Error>,
 }
 
+impl Taken {
+    /// Least and most samples of a pixel.
+    pub fn samples(&self) -> (u32, u32) {
+        let counts = || self.film.texels().iter().map(|t| t.samples);
+        (counts().min().unwrap_or(0), counts().max().unwrap_or(0))
+    }
+
+    /// Camera paths per second of sampling.
+    pub fn paths_per_second(&self) -> f64 {
+        let paths: u64 = self.film.texels().iter().map(|t| u64::from(t.samples)).sum();
+        paths as f64 / self.elapsed.as_secs_f64().max(1e-9)
+    }
+}
+
 /// Samples the job. `interrupted` is asked, and `observe` told, after every pass.
 ///
 /// # Errors

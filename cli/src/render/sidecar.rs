@@ -18,12 +18,6 @@ pub struct Times {
     pub total: Duration,
 }
 
-/// Least and most samples of a pixel.
-fn samples_done(done: &Done) -> (u32, u32) {
-    let counts = || done.taken.film.texels().iter().map(|t| t.samples);
-    (counts().min().unwrap_or(0), counts().max().unwrap_or(0))
-}
-
 fn sampler_name(sampler: Sampler) -> &'static str {
     match sampler {
         Sampler::Sobol => "sobol",
@@ -45,7 +39,7 @@ pub fn attributes(args: &RenderArgs, job: &Job, done: &Done) -> Vec<(&'static st
         ("mode", mode.into()),
         ("seed", settings.seed.to_string()),
         ("sampler", sampler_name(settings.sampler).into()),
-        ("samples", samples_done(done).0.to_string()),
+        ("samples", done.taken.samples().0.to_string()),
         ("bounces", settings.bounces.map_or("unlimited".into(), |n| n.to_string())),
         ("stop", done.taken.stop.name().into()),
     ]
@@ -62,10 +56,9 @@ pub fn json(
     times: &Times,
 ) -> String {
     let (settings, camera) = (&job.settings, &job.camera);
-    let (least, most) = samples_done(done);
+    let (least, most) = done.taken.samples();
     let seconds = |d: Duration| (d.as_secs_f64() * 1e6).round_ties_even() / 1e6;
     let pixels = u64::from(settings.width) * u64::from(settings.height);
-    let paths: u64 = done.taken.film.texels().iter().map(|t| u64::from(t.samples)).sum();
     let value = json!({
         "twinlight": env!("CARGO_PKG_VERSION"),
         "scene": { "source": args.scene, "triangles": prepared.scene.triangle_count() },
@@ -94,7 +87,7 @@ pub fn json(
         "result": {
             "stop": done.taken.stop.name(),
             "samples": { "least": least, "most": most },
-            "paths_per_second": paths as f64 / done.taken.elapsed.as_secs_f64().max(1e-9),
+            "paths_per_second": done.taken.paths_per_second(),
         },
         "seconds": {
             "load": seconds(prepared.load_time),

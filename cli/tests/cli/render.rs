@@ -13,7 +13,9 @@ fn furnace_gives_png_exr_and_sidecar() {
     let folder = Folder::new();
     let run = folder.run(&small("builtin:furnace", &[])).ok();
     assert_eq!(run.stdout, "furnace.png\nfurnace.exr\nfurnace.json\n");
-    assert_eq!(run.stderr, "", "no bar and no notice where nobody asked for one");
+    let summary = run.stderr.strip_prefix("4 samples per pixel in ").expect("no bar and no notice before it");
+    assert!(summary.contains(" paths/s, CPU, 2 threads)\n") && summary.lines().count() == 1, "{summary}");
+    assert_eq!(folder.run(&small("builtin:furnace", &["--progress", "never"])).ok().stderr, "");
 
     let limits = Limits::default();
     let png = read_rgb(&folder.read("furnace.png"), "png", &limits).unwrap();
