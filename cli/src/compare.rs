@@ -71,7 +71,7 @@ impl Picture {
             let layers = if is_exr { Some(read_layers(&bytes, &name, &limits)?) } else { None };
             Ok((rgb, layers))
         };
-        let (rgb, layers) = read().map_err(Failure::at(Stage::Input))?;
+        let (rgb, layers) = read().map_err(Failure::at(Stage::Pictures))?;
         let rgb = Image::new(rgb.width, rgb.height, rgb.pixels).map_err(Failure::Pictures)?;
         Ok(Self { name, rgb, layers })
     }
@@ -81,7 +81,7 @@ impl Picture {
         let variance = self.layers.as_ref().and_then(|layers| layers.f32_channel("variance.Y"));
         let Some(variance) = variance else {
             let what = "has no variance.Y layer: the z-test compares EXR files of `twinlight render`";
-            return Err(Failure::Library(Stage::Input, Error::invalid(&self.name, what)));
+            return Err(Failure::Library(Stage::Pictures, Error::invalid(&self.name, what)));
         };
         let weights = [0.2126, 0.7152, 0.0722];
         let luminance = |p: &[f32; 3]| (0..3).map(|c| weights[c] * f64::from(p[c])).sum::<f64>() as f32;

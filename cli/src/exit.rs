@@ -22,8 +22,10 @@ Exit codes:
 /// What was being done when the library refused: the same error means something else elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// Reading scenes and pictures.
+    /// Reading scenes.
     Input,
+    /// Reading pictures.
+    Pictures,
     /// Opening a backend and computing.
     Device,
     /// Writing results.
@@ -79,10 +81,11 @@ impl Failure {
             }
             Error::DeviceLost { .. } => "often passing: run it again, or with `--backend cpu`",
             Error::Internal(_) => "please report it with the command line and the scene",
-            Error::Io { source, .. } if *stage == Stage::Input => match source.kind() {
-                std::io::ErrorKind::NotFound => {
+            Error::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound => match stage {
+                Stage::Input => {
                     "the path is relative to the current folder; `twinlight scene list` names scenes without files"
                 }
+                Stage::Pictures => "the path is relative to the current folder",
                 _ => return None,
             },
             _ => return None,
@@ -93,7 +96,7 @@ impl Failure {
 fn library_code(stage: Stage, error: &Error) -> u8 {
     match error {
         Error::InvalidInput { .. } => 3,
-        Error::Unsupported(_) if stage == Stage::Input => 3,
+        Error::Unsupported(_) if matches!(stage, Stage::Input | Stage::Pictures) => 3,
         Error::Unsupported(_) | Error::BackendUnavailable { .. } => 7,
         Error::LimitExceeded { .. } | Error::OutOfMemory { .. } => 6,
         Error::DeviceLost { .. } => 8,
@@ -126,6 +129,7 @@ mod tests {
         let cases = [
             (Stage::Input, Error::invalid("a:1:2", "bad"), 3),
             (Stage::Input, Error::Unsupported("a.xyz".into()), 3),
+            (Stage::Pictures, Error::Unsupported("a.xyz".into()), 3),
             (Stage::Device, Error::Unsupported("strict mode".into()), 7),
             (Stage::Device, Error::BackendUnavailable { tried: "gpu".into() }, 7),
             (Stage::Device, Error::limit("bytes", 2, 1), 6),

@@ -88,7 +88,9 @@ impl Resolver {
         let relative = checked(path)?;
         let outside = || {
             let folder = self.roots[0].display();
-            let what = format!("lies outside the scene's folder {folder} (allow its folder to read it)");
+            let what = format!(
+                "lies outside the scene's folder {folder} (--allow-path or LoadOptions::allow_paths lets other folders be read)"
+            );
             Err(Error::invalid(format!("reference '{path}'"), what))
         };
         let plain = lexical(&self.base.join(relative));

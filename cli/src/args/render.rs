@@ -146,20 +146,33 @@ pub struct RenderArgs {
     #[arg(long, value_name = "WxH", env = "TWINLIGHT_SIZE", help_heading = "Quality")]
     pub size: Option<Size>,
     /// Samples per pixel [default: the scene's, else 64; unlimited with --time]
-    #[arg(long, value_name = "N", env = "TWINLIGHT_SPP", help_heading = "Quality",
+    #[arg(long, value_name = "N", env = "TWINLIGHT_SPP", help_heading = "Quality", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u32).range(1..=16_777_216))]
     pub spp: Option<u32>,
     /// Stop after this many seconds, but not before every pixel has a sample
     ///
     /// With --spp, whichever comes first. The number of samples then depends on the machine, and the picture with it.
-    #[arg(long, value_name = "SECONDS", env = "TWINLIGHT_TIME", help_heading = "Quality", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", env = "TWINLIGHT_TIME", help_heading = "Quality", value_parser = seconds,
+          allow_negative_numbers = true)]
     pub time: Option<f64>,
     /// Times light may scatter: 0 shows emitters alone, 1 direct light, `unlimited` everything [default: the scene's, else
     /// unlimited]
-    #[arg(long, value_name = "N", env = "TWINLIGHT_BOUNCES", help_heading = "Quality")]
+    #[arg(
+        long,
+        value_name = "N",
+        env = "TWINLIGHT_BOUNCES",
+        help_heading = "Quality",
+        allow_negative_numbers = true
+    )]
     pub bounces: Option<Bounces>,
     /// Seed of the random numbers: same seed, same picture
-    #[arg(long, value_name = "N", env = "TWINLIGHT_SEED", help_heading = "Quality")]
+    #[arg(
+        long,
+        value_name = "N",
+        env = "TWINLIGHT_SEED",
+        help_heading = "Quality",
+        allow_negative_numbers = true
+    )]
     pub seed: Option<u32>,
     /// Where random numbers come from
     #[arg(
@@ -195,7 +208,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "MODE", env = "TWINLIGHT_MODE", help_heading = "Device")]
     pub mode: Option<ModeName>,
     /// Threads of the CPU backend; the picture is the same for any number [default: one per core]
-    #[arg(long, value_name = "N", env = "TWINLIGHT_THREADS", help_heading = "Device",
+    #[arg(long, value_name = "N", env = "TWINLIGHT_THREADS", help_heading = "Device", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// How progress is shown, on stderr

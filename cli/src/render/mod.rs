@@ -43,13 +43,13 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     prepared.notices.iter().cloned().for_each(&mut tell);
     let (device, unavailable) = device::open(&args.backend, args.mode, args.threads)?;
     unavailable.into_iter().for_each(&mut tell);
-    let done = run::render(device, args, &prepared, &job, &interrupt, &mut tell)?;
     if args.mode == Some(ModeName::Portable) && matches!(device, Device::Cpu(_)) {
         tell(
             "--mode portable is for GPUs: the CPU, which renders this, always computes as in strict mode"
                 .into(),
         );
     }
+    let done = run::render(device, args, &prepared, &job, &interrupt, &mut tell)?;
 
     let write_start = Instant::now();
     let pictures = layers::Pictures::new(&done.taken.film, done.gbuffer.as_deref(), display)?;

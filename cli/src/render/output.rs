@@ -25,7 +25,7 @@ impl Outputs {
     /// From the paths asked for, or `stem`.png and `stem`.exr in the current folder.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for other extensions and for one file asked for twice.
+    /// [`Failure::Usage`] for other extensions, for folders and for one file asked for twice.
     pub fn plan(paths: &[PathBuf], stem: &str) -> Result<Self, Failure> {
         let defaults = [format!("{stem}.png").into(), format!("{stem}.exr").into()];
         let paths = if paths.is_empty() { &defaults[..] } else { paths };
@@ -33,6 +33,9 @@ impl Outputs {
         for path in paths {
             if pictures.iter().any(|(other, _)| other == path) {
                 return Err(Failure::Usage(format!("'{}' is asked for twice", path.display())));
+            }
+            if path.is_dir() {
+                return Err(Failure::Usage(folder_instead(path, stem)));
             }
             pictures.push((path.clone(), format_of(path)?));
         }
@@ -49,9 +52,6 @@ impl Outputs {
             let io = |source| Failure::Library(Stage::Output, Error::Io { path: path.clone(), source });
             let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
             std::fs::create_dir_all(folder).map_err(io)?;
-            if path.is_dir() {
-                return Err(io(std::io::ErrorKind::IsADirectory.into()));
-            }
             let probe = folder.join(format!(".twinlight-{}.probe", std::process::id()));
             std::fs::File::create_new(&probe).map_err(io)?;
             std::fs::remove_file(&probe).map_err(io)?;
@@ -97,6 +97,11 @@ impl Outputs {
     pub fn list(&self) -> String {
         self.pictures().chain([self.sidecar.as_path()]).map(|path| format!("{}\n", path.display())).collect()
     }
+}
+
+fn folder_instead(path: &Path, stem: &str) -> String {
+    let inside = path.join(format!("{stem}.png"));
+    format!("'{}' is a folder: name a file in it, such as '{}'", path.display(), inside.display())
 }
 
 fn format_of(path: &Path) -> Result<Format, Failure> {

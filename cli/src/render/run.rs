@@ -85,6 +85,12 @@ impl Session<'_> {
         let start = Instant::now();
         // A lost device answers nothing more, and an interrupted user waits for nothing more.
         let wanted = matches!(taken.stop, Stop::Samples | Stop::Time);
+        if !wanted {
+            tell(format!(
+                "no albedo, normal, depth and id layers: the render ended early ({})",
+                taken.stop.name()
+            ));
+        }
         let gbuffer = match wanted.then(|| self.gbuffer(backend, &resident)) {
             None => None,
             Some(Ok(gbuffer)) => Some(gbuffer),

@@ -27,27 +27,36 @@ fn wrong_flags_are_2_and_say_what_is_right() {
         ("--size", "640", "WIDTHxHEIGHT"),
         ("--size", "0x4", "WIDTHxHEIGHT"),
         ("--spp", "0", "1..=16777216"),
+        ("--spp", "-1", "1..=16777216"),
         ("--time", "-1", "seconds above 0"),
         ("--bounces", "many", "`unlimited`"),
         ("--camera", "0,0,0 0,0,0 40", "same point"),
         ("--camera", "0,0 1,1,1 40", "vertical field of view"),
-        ("--threads", "0", "1..=1024"),
-        ("--backend", "cuda", "auto, cpu, gpu"),
-        ("--max-memory", "1.5G", "such as 4GiB"),
-        ("--tonemap", "filmic", "none, reinhard, aces"),
-        ("--exposure", "99", "-64..=64"),
-        ("-o", "picture.jpg", ".png or .exr"),
         (
             "--camera",
             "2e12,0,0 0,0,0 40",
             "2000000000000.0 of position or target is not a number within ±2^40",
         ),
         ("--camera", "0,0,0 0,0,-1e300 40", "-1e300 of position or target"),
+        ("--threads", "0", "1..=1024"),
+        ("--backend", "cuda", "auto, cpu, gpu"),
+        ("--max-memory", "1.5G", "such as 4GiB"),
+        ("--tonemap", "filmic", "none, reinhard, aces"),
+        ("--exposure", "99", "-64..=64"),
+        ("-o", "picture.jpg", ".png or .exr"),
     ] {
         let flag_and_value = format!("{flag}={value}");
         let arguments: Vec<&str> = if flag == "-o" { vec![flag, value] } else { vec![&flag_and_value] };
         folder.run(&[&["render", "builtin:furnace"], &arguments[..]].concat()).fails(2, message);
     }
+    // A separate word that begins with a dash is the value all the same.
+    for flag in ["--spp", "--time", "--bounces", "--seed", "--threads"] {
+        let run = folder.run(&["render", "builtin:furnace", flag, "-1"]).fails(2, "invalid value '-1'");
+        assert!(!run.stderr.contains("-- -1"), "{}", run.stderr);
+    }
+    folder
+        .run(&["compare", "a.exr", "b.exr", "--error-image", "e.jpg"])
+        .fails(2, "'e.jpg': the error image is a PNG");
     folder.run(&["render"]).fails(2, "SCENE");
     folder.run(&["rendr", "x"]).fails(2, "render");
 }
@@ -59,8 +68,33 @@ fn files_that_can_not_be_read_or_written_are_5() {
     folder.write("file", "in the way");
     folder.run(&["render", "builtin:furnace", "-o", "file/a.png"]).fails(5, "file/a.png: ");
     std::fs::create_dir(folder.path("taken.png")).unwrap();
-    folder.run(&["render", "builtin:furnace", "-o", "taken.png"]).fails(5, "taken.png: ");
-    folder.run(&["compare", "missing.exr", "missing.exr"]).fails(5, "missing.exr: ");
+    folder.run(&["render", "builtin:furnace", "-o", "taken.png"]).fails(2, "such as 'taken.png/furnace.png'");
+    let run = folder.run(&["compare", "missing.exr", "missing.exr"]).fails(5, "missing.exr: ");
+    assert!(run.stderr.ends_with(" hint: the path is relative to the current folder\n"), "{}", run.stderr);
+}
+
+/// A device may never end and a pipe never begin.
+#[cfg(unix)]
+#[test]
+fn only_regular_files_are_read() {
+    let folder = Folder::new();
+    let made = std::process::Command::new("mkfifo").arg(folder.path("pipe.exr")).status().unwrap();
+    assert!(made.success());
+    for path in ["/dev/zero", "pipe.exr", "."] {
+        folder.run(&["compare", path, "a.exr"]).fails(3, &format!("{path}: is not a regular file"));
+    }
+    folder.write("a.toml", "[environment]\nfile = \"pipe.exr\"\n");
+    folder.run(&["render", "a.toml"]).fails(3, "pipe.exr: is not a regular file");
+}
+
+#[test]
+fn a_file_outside_the_folder_is_refused_with_the_way_to_allow_it() {
+    let folder = Folder::new();
+    folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    std::fs::create_dir(folder.path("in")).unwrap();
+    folder.write("in/a.toml", "[[mesh]]\npath = \"../a.obj\"\n");
+    folder.run(&["scene", "inspect", "in/a.toml"]).fails(3, "--allow-path");
+    folder.run(&["scene", "inspect", "in/a.toml", "--allow-path", "."]).ok();
 }
 
 #[test]

@@ -113,8 +113,6 @@ fn progress_lines_reach_one_and_never_fall() {
 }
 
 #[test]
-fn somebodys_json_is_not_replaced() {
-#[test]
 fn a_mode_of_gpus_is_not_ignored_in_silence() {
     let folder = Folder::new();
     let run = folder.run(&small("builtin:furnace", &["--mode", "portable"])).ok();
@@ -123,6 +121,8 @@ fn a_mode_of_gpus_is_not_ignored_in_silence() {
     assert!(!run.stderr.contains("notice"), "{}", run.stderr);
 }
 
+#[test]
+fn somebodys_json_is_not_replaced() {
     let folder = Folder::new();
     folder.write("picture.json", "{\"mine\": 1}");
     let run = folder.run(&small("builtin:furnace", &["-o", "picture.png"]));

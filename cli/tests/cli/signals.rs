@@ -30,6 +30,7 @@ fn one_signal_saves_valid_files() {
     for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
         let folder = Folder::new();
         let run = interrupted(&folder, signal).fails(code, "interrupted; what was finished is saved");
+        assert!(run.stderr.contains("id layers: the render ended early (interrupted)"), "{}", run.stderr);
         assert_eq!(run.stdout, "cornell.png\ncornell.exr\ncornell.json\n");
         for name in ["cornell.png", "cornell.exr"] {
             let image = read_rgb(&folder.read(name), name, &Limits::default()).unwrap();
