@@ -14,8 +14,8 @@ const SMALLEST: f64 = 1e-6;
 /// small holes stay below it.
 const OPEN: f64 = 0.1;
 
-/// Gives a scene without a camera one that frames it, from its open side if it has one, and a scene without light a rectangle beside the camera, each with
-/// a notice.
+/// Gives a scene without a camera one that frames it, from its open side if it has one, and a scene without light a
+/// rectangle beside the camera, each with a notice.
 ///
 /// The rectangle lies in the plane of the eye, just above it, and faces along the view axis: the eye stands in free
 /// space, so the light does too, whether the scene is a single object seen from outside or a closed room seen from inside;

@@ -96,9 +96,10 @@ impl Camera {
 
 /// `side`, and something to the right and upwards of it.
 fn aslant(side: DVec3) -> DVec3 {
-    // Near the vertical, right and upwards turn with every rounding: from there fixed directions count.
+    // Near the vertical, right and upwards turn with every rounding: from there fixed directions count. Half-way up, where
+    // one looks over the wall of an open box, and at what stands on a floor rather than down on it.
     if side.y.abs() > 0.9 {
-        return DVec3::new(0.35, side.y.signum(), 0.3);
+        return DVec3::new(0.35, side.y.signum(), 1.0);
     }
     let right = DVec3::Y.cross(side).normalize();
     side + right * 0.35 + side.cross(right) * 0.3
