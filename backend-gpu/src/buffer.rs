@@ -10,8 +10,8 @@ use twinlight_core::{Error, Result};
 /// Bindings must not be empty, and 16 bytes keep every element type of ours aligned.
 const GRANULE: u64 = 16;
 
-/// Runs of elements are bound from multiples of this on: elements are whole words, so that is a multiple of the 256 bytes that
-/// WebGPU lets adapters ask of an offset.
+/// Runs of elements are bound from multiples of this on: elements are whole words, so that is a multiple of the 256
+/// bytes that WebGPU lets adapters ask of an offset.
 pub(crate) const CHUNK_GRAIN: usize = 64;
 
 /// `len` elements of `T` on one device.

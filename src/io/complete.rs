@@ -83,7 +83,9 @@ fn open_side(scene: &Scene) -> Option<DVec3> {
             }
         }
     }
-    if sum.length() > OPEN * area { sum.try_normalize() } else { None }
+    let side = if sum.length() > OPEN * area { sum.try_normalize() } else { None };
+    // Nobody looks from under the ground, and grounds are wound either way.
+    side.filter(|side| side.y > -0.9)
 }
 
 fn within_limit(p: DVec3) -> bool {

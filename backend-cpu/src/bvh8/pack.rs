@@ -103,7 +103,7 @@ impl<W: Width> PackRay<W> {
         [corner[0] - self.origin[0], corner[1] - self.origin[1], corner[2] - self.origin[2]]
     }
 
-    /// Tests every lane. `None` when no triangle's edges let the ray through, which is the common case.
+    /// Tests every lane. `None` when it is soon clear that none is met, most often by the edges.
     #[inline(always)]
     pub(super) fn meet(&self, width: W, pack: &Pack, t_best: f32) -> Option<PackHits<W>> {
         let zero = PackLanes::<W>::splat(width, 0.0);

@@ -104,7 +104,8 @@ impl Scan {
     }
 }
 
-/// Elements that one part of a scan may have: whole tiles, whose sums begin at a grain too.
+/// Elements that one part of a scan may have: whole tiles, whose sums begin at a grain too. 0 where a binding holds less
+/// than a mebibyte: such a scan has one part or is refused.
 pub fn chunk(device: &GpuDevice) -> usize {
     let step = TILE_SIZE as usize * CHUNK_GRAIN;
     device.elements_per_binding(size_of::<u32>()) / step * step
@@ -113,7 +114,8 @@ pub fn chunk(device: &GpuDevice) -> usize {
 /// Runs the kernel; see the contract.
 ///
 /// # Errors
-/// [`Error::InvalidInput`] when the lengths differ, [`Error::LimitExceeded`] beyond [`MAX_LEN`].
+/// [`Error::InvalidInput`] when the lengths differ, [`Error::LimitExceeded`] beyond [`MAX_LEN`] or where a binding holds
+/// too little for one part.
 pub fn run(device: &GpuDevice, input: &GpuBuffer<u32>, output: &mut GpuBuffer<u32>) -> Result<u32> {
     if input.len() != output.len() {
         return Err(Error::invalid("scan", format!("{} inputs, {} outputs", input.len(), output.len())));

@@ -66,7 +66,8 @@ pub struct SortParams {
 /// which are then merged.
 ///
 /// # Errors
-/// [`Error::InvalidInput`] when the lengths differ, [`Error::LimitExceeded`] beyond [`MAX_LEN`].
+/// [`Error::InvalidInput`] when the lengths differ, [`Error::LimitExceeded`] beyond [`MAX_LEN`] or where a binding holds
+/// too little for one chunk.
 pub fn run<K: Pod>(device: &GpuDevice, keys: &mut GpuBuffer<K>, payload: &mut GpuBuffer<u32>) -> Result<()> {
     if keys.len() != payload.len() {
         return Err(Error::invalid("sort", format!("{} keys, {} payloads", keys.len(), payload.len())));

@@ -3,11 +3,11 @@
 use crate::{Check, Target, expect_same};
 use libtest_mimic::Failed;
 use twinlight_backend_gpu::{DeviceOptions, GpuBackend, GpuDevice};
-use twinlight_core::Backend;
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::Hit;
 use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsParams};
 use twinlight_core::scene::{Limits, compile};
+use twinlight_core::{Backend, Error};
 use twinlight_fixtures::inputs;
 use twinlight_fixtures::scenes::builtin;
 
@@ -16,6 +16,8 @@ pub const CHECKS: &[(&str, Check)] = &[
     ("d3: more rays than a binding holds", rays),
     ("d3: pictures larger than a binding", pictures),
     ("d3: a sort larger than a binding", sort),
+    ("d3: a scene larger than a binding is refused", scene),
+    ("d3: a binding too small for a chunk is refused", tiny_binding),
 ];
 
 /// Bytes of a binding: chunks of 2¹⁸ words.
@@ -137,4 +139,26 @@ fn expect_sorted<K: Ord + Copy + std::fmt::Debug>(
     expect_same(&format!("payload of {what}"), payload, &places)?;
     let sorted: Vec<K> = places.iter().map(|&place| input[place as usize]).collect();
     expect_same(&format!("keys of {what}"), keys, &sorted)
+}
+
+/// Traversal goes anywhere in a scene, so that no run of its records is enough: the limit stays one, and is named.
+fn scene(target: &Target) -> Result<(), Failed> {
+    let options = DeviceOptions { max_storage_binding_bytes: 1 << 10, ..target.options.clone() };
+    let backend = GpuBackend::new(GpuDevice::open(&options)?);
+    let scene = compile(&builtin("cornell").ok_or("no such scene")?, &Limits::default())?;
+    expect_limit(1 << 10, backend.upload_scene(&scene))
+}
+
+fn tiny_binding(target: &Target) -> Result<(), Failed> {
+    let options = DeviceOptions { max_storage_binding_bytes: 128, ..target.options.clone() };
+    let backend = GpuBackend::new(GpuDevice::open(&options)?);
+    let mut keys = backend.zeroed::<u32>(100)?;
+    expect_limit(128, backend.sort_u32(&mut keys, &mut backend.zeroed::<u32>(100)?))
+}
+
+fn expect_limit<T: std::fmt::Debug>(expected: u64, result: twinlight_core::Result<T>) -> Result<(), Failed> {
+    match result {
+        Err(Error::LimitExceeded { limit, .. }) if limit == expected => Ok(()),
+        other => Err(format!("{other:?} for a limit of {expected}").into()),
+    }
 }

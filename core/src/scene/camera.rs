@@ -32,6 +32,8 @@ impl Camera {
         let vfov_degrees: f64 = 40.0;
         let distance = radius / (vfov_degrees.to_radians() * 0.5).sin() * 1.05;
         let eye = center + aslant(side).normalize() * distance;
+        // Scenes about as large as they may be leave no room to step back.
+        let eye = eye.clamp(DVec3::splat(-COORDINATE_LIMIT), DVec3::splat(COORDINATE_LIMIT));
         Self { position: eye.to_array(), target: center.to_array(), up: [0.0, 1.0, 0.0], vfov_degrees }
     }
 
@@ -96,8 +98,8 @@ impl Camera {
 
 /// `side`, and something to the right and upwards of it.
 fn aslant(side: DVec3) -> DVec3 {
-    // Near the vertical, right and upwards turn with every rounding: from there fixed directions count. Half-way up, where
-    // one looks over the wall of an open box, and at what stands on a floor rather than down on it.
+    // Near the vertical, right and upwards turn with every rounding: from there fixed directions count. Half-way up,
+    // where one looks over the wall of an open box, and at what stands on a floor rather than down on it.
     if side.y.abs() > 0.9 {
         return DVec3::new(0.35, side.y.signum(), 1.0);
     }

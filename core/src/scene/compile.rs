@@ -74,7 +74,7 @@ pub fn compile(scene: &Scene, limits: &Limits) -> Result<CompiledScene> {
     })
 }
 
-/// Least extent of a scene, 2⁻³⁰. Edge functions and areas are products of two lengths, depths of three: far below this
+/// Least extent of a scene as a whole, 2⁻³⁰. Edge functions and areas are products of two lengths, depths of three: far below this
 /// size they leave the range of normal numbers, where adapters flush them and triangles are missed.
 const SMALLEST_EXTENT: f32 = 9.313_226e-10;
 
@@ -124,7 +124,7 @@ struct Flat {
     dropped: usize,
     unusable_normals: usize,
     contrary_normals: usize,
-    coincident: usize,
+    coincident: coincident::LeftOut,
 }
 
 fn narrow(v: DVec3) -> [f32; 3] {
@@ -239,10 +239,15 @@ impl Flat {
                 self.dropped
             ));
         }
-        if self.coincident > 0 {
-            let n = self.coincident;
+        let coincident::LeftOut { triangles, other_lights } = self.coincident;
+        if triangles > 0 {
             notices.push(format!(
-                "{n} triangles with the corners of an emissive one left out: a ray meets only one of them"
+                "{triangles} triangles with the corners of an emissive one left out: rays meet only that one"
+            ));
+        }
+        if other_lights > 0 {
+            notices.push(format!(
+                "of these, {other_lights} emit otherwise than the one that stays: that is lost"
             ));
         }
         if self.unusable_normals > 0 {

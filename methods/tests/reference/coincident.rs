@@ -1,7 +1,7 @@
 //! Lamps that lie on lamps: a ray meets one of them, so one of them shines.
 
-use crate::{film, settings};
-use twinlight_core::scene::{Camera, Instance, Limits, Material, Mesh, Scene, compile};
+use crate::{film, mean, settings};
+use twinlight_core::scene::{Camera, Instance, Light, Limits, Material, Mesh, Scene, compile};
 use twinlight_fixtures::meshes::quad;
 use twinlight_fixtures::scenes::builtin;
 
@@ -60,6 +60,31 @@ fn two_lamps_back_to_back_are_one_with_two_sides() {
     assert!(pair.radiance() == expected.radiance());
     let single = film(&two_floors(one_sided, &[front]), &settings);
     assert!(single.radiance() != expected.radiance(), "the other side lights nothing in view");
+}
+
+/// Rectangle lights have a material each: what they emit counts, not which it is.
+#[test]
+fn two_rectangles_back_to_back_are_one_with_two_sides() {
+    let [corner, side, _, other] = LAMP;
+    let edge = |to: [f32; 3]| [0, 1, 2].map(|axis| to[axis] - corner[axis]);
+    let rectangle = |edge_u, edge_v, radiance| Light::Rectangle { corner, edge_u, edge_v, radiance };
+    let lit_by = |lights: Vec<Light>| {
+        let mut scene = two_floors(Material::default(), &[]);
+        scene.lights = lights;
+        scene
+    };
+    let settings = settings(24, 16);
+    let (u, v) = (edge(side), edge(other));
+    let pair = lit_by(vec![rectangle(u, v, [5.0; 3]), rectangle(v, u, [5.0; 3])]);
+    let front = mean(&film(&lit_by(vec![rectangle(u, v, [5.0; 3])]), &settings)).0;
+    let back = mean(&film(&lit_by(vec![rectangle(v, u, [5.0; 3])]), &settings)).0;
+    let (both, error) = mean(&film(&pair, &settings));
+    assert!(front > 0.0 && back > 0.0);
+    // Each of the three has its own noise.
+    assert!((both - (front + back)).abs() < 3.0 * 4.0 * error, "{both} for {front} + {back}, error {error}");
+    let unlike = lit_by(vec![rectangle(u, v, [5.0; 3]), rectangle(v, u, [1.0, 0.0, 0.0])]);
+    let notices = compile(&unlike, &Limits::default()).unwrap().notices;
+    assert!(notices.iter().any(|notice| notice.contains("2 emit otherwise")), "{notices:?}");
 }
 
 /// Corners in another order would be met at a t that differs in its last bits, now before and now behind the others.

@@ -22,10 +22,21 @@ fn emits(material: &MaterialRecord) -> bool {
     material.emission.iter().any(|&e| e > 0.0)
 }
 
-/// Leaves out every triangle that has the corners of an emissive one, and returns how many. A ray meets only one of them,
-/// but each would be sampled as a light of its own: a lamp instanced twice would shine twice. Of several emissive ones the
-/// first stays. Two that back each other are how files without two-sided emitters model one, so that becomes one.
-pub(super) fn leave_out(flat: &mut Flat, materials: &mut Vec<MaterialRecord>) -> usize {
+/// What was left out.
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct LeftOut {
+    /// Triangles in all.
+    pub(super) triangles: usize,
+    /// Those that emit otherwise than the one that stays, so that their light is lost.
+    pub(super) other_lights: usize,
+}
+
+/// Leaves out every triangle that has the corners of an emissive one. A ray meets only one of them, but each would be
+/// sampled as a light of its own: a lamp instanced twice would shine twice. The first emissive one stays, and hides a wall
+/// that has its corners. Two that back each other with the same emission become one that emits from both sides, which is
+/// what they model. Quads cut along different diagonals share no triangle, and are left as they are.
+pub(super) fn leave_out(flat: &mut Flat, materials: &mut Vec<MaterialRecord>) -> LeftOut {
+    let mut left_out = LeftOut::default();
     let mut first = HashMap::new();
     for (i, corners) in flat.corners.iter().enumerate() {
         if emits(&materials[flat.materials[i] as usize]) {
@@ -33,7 +44,7 @@ pub(super) fn leave_out(flat: &mut Flat, materials: &mut Vec<MaterialRecord>) ->
         }
     }
     if first.is_empty() {
-        return 0;
+        return left_out;
     }
     let mut keep = vec![true; flat.corners.len()];
     let mut backed = Vec::new();
@@ -43,14 +54,17 @@ pub(super) fn leave_out(flat: &mut Flat, materials: &mut Vec<MaterialRecord>) ->
             continue;
         }
         keep[i] = false;
-        let same_light = flat.materials[i] == flat.materials[stays];
-        if same_light && !same_winding(flat.corners[stays], *corners) {
+        left_out.triangles += 1;
+        let (own, other) =
+            (&materials[flat.materials[stays] as usize], &materials[flat.materials[i] as usize]);
+        if own.emission != other.emission {
+            left_out.other_lights += usize::from(emits(other));
+        } else if !same_winding(flat.corners[stays], *corners) {
             backed.push(stays);
         }
     }
     emit_from_both_sides(flat, materials, &backed);
-    let left_out = keep.iter().filter(|&&keep| !keep).count();
-    if left_out > 0 {
+    if left_out.triangles > 0 {
         flat.retain(&keep);
     }
     left_out

@@ -175,7 +175,7 @@ impl Listed {
 
     /// A notice where all light is so dim that the film's quanta don't follow it down.
     pub(super) fn dim(&self) -> Option<String> {
-        let coarse = self.brightest > 0.0 && self.brightest < f64::from(LEAST_MAGNITUDE).exp2();
+        let coarse = self.brightest > 0.0 && self.brightest.log2().ceil() < f64::from(LEAST_MAGNITUDE);
         let radiance = self.brightest;
         coarse.then(|| {
             format!("the brightest light has a radiance of {radiance:e}: the film rounds it; scale lights up")
