@@ -3,16 +3,18 @@
 use crate::buffer::{CpuBuffer, try_copy, try_zeroed};
 use crate::scratch::Scratch;
 use crate::simd::Isa;
-use crate::{CpuScene, kernels, processor, simd};
+use crate::{CpuMesh, CpuScene, kernels, processor, simd};
 use bytemuck::Pod;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use twinlight_core::kernels::rasterize_lhb::{Lhb, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
 use twinlight_core::kernels::{scan, sort};
+use twinlight_core::lattice::{LatticeMesh, View};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, BackendInfo, Error, Result};
 
@@ -102,6 +104,7 @@ fn check_limit(what: &str, found: usize, limit: usize) -> Result<()> {
 impl Backend for CpuBackend {
     type Buffer<T: Pod + Send + Sync> = CpuBuffer<T>;
     type Scene = CpuScene;
+    type Mesh = CpuMesh;
 
     fn info(&self) -> BackendInfo {
         let driver = format!("{} {}, {} threads", std::env::consts::ARCH, self.isa.name(), self.threads());
@@ -126,6 +129,10 @@ impl Backend for CpuBackend {
 
     fn upload_scene(&self, scene: &CompiledScene) -> Result<CpuScene> {
         self.run("upload_scene", || CpuScene::new(scene))
+    }
+
+    fn upload_mesh(&self, mesh: &LatticeMesh) -> Result<CpuMesh> {
+        self.run("upload_mesh", || CpuMesh::new(mesh))
     }
 
     fn scan(&self, input: &CpuBuffer<u32>, output: &mut CpuBuffer<u32>) -> Result<u32> {
@@ -203,6 +210,16 @@ impl Backend for CpuBackend {
             kernels::trace_paths::trace_paths(self.isa, scene.data(), params, film);
             Ok(())
         })
+    }
+
+    fn rasterize_lhb(
+        &self,
+        mesh: &CpuMesh,
+        views: &[View],
+        params: &RasterizeLhbParams,
+    ) -> Result<Lhb<Self>> {
+        params.check(views)?;
+        self.run("rasterize_lhb", || kernels::rasterize_lhb::rasterize_lhb(self.isa, mesh, views, params))
     }
 }
 

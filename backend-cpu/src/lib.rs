@@ -22,6 +22,7 @@ mod backend;
 mod buffer;
 pub mod bvh8;
 mod kernels;
+mod mesh;
 mod parallel;
 mod processor;
 mod sampler;
@@ -32,4 +33,5 @@ mod tracer;
 
 pub use backend::CpuBackend;
 pub use buffer::CpuBuffer;
+pub use mesh::CpuMesh;
 pub use scene::{CpuScene, SceneData};

@@ -2,13 +2,16 @@
 
 use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
-use crate::kernels::{scan, shade_primary, sort, trace, trace_paths};
+use crate::kernels::{rasterize_lhb, scan, shade_primary, sort, trace, trace_paths};
+use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
 use crate::strict::Mode;
 use bytemuck::Pod;
+use twinlight_core::kernels::rasterize_lhb::{Lhb, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use twinlight_core::lattice::{LatticeMesh, View};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, BackendInfo, Result};
 
@@ -41,6 +44,7 @@ impl GpuBackend {
 impl Backend for GpuBackend {
     type Buffer<T: Pod + Send + Sync> = GpuBuffer<T>;
     type Scene = GpuScene;
+    type Mesh = GpuMesh;
 
     fn info(&self) -> BackendInfo {
         let report = self.device.report();
@@ -72,6 +76,10 @@ impl Backend for GpuBackend {
 
     fn upload_scene(&self, scene: &CompiledScene) -> Result<GpuScene> {
         GpuScene::new(&self.device, scene)
+    }
+
+    fn upload_mesh(&self, mesh: &LatticeMesh) -> Result<GpuMesh> {
+        GpuMesh::new(&self.device, mesh)
     }
 
     fn scan(&self, input: &GpuBuffer<u32>, output: &mut GpuBuffer<u32>) -> Result<u32> {
@@ -120,5 +128,14 @@ impl Backend for GpuBackend {
         film: &mut GpuBuffer<FilmTexel>,
     ) -> Result<()> {
         trace_paths::run(&self.device, scene, params, film)
+    }
+
+    fn rasterize_lhb(
+        &self,
+        mesh: &GpuMesh,
+        views: &[View],
+        params: &RasterizeLhbParams,
+    ) -> Result<Lhb<Self>> {
+        rasterize_lhb::run(&self.device, mesh, views, params)
     }
 }

@@ -8,9 +8,11 @@ mod trace_paths;
 
 use crate::faults::Fault;
 use bytemuck::Pod;
+use twinlight_core::kernels::rasterize_lhb::{Lhb, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use twinlight_core::lattice::{LatticeMesh, View};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, BackendInfo, Result};
 
@@ -38,6 +40,7 @@ impl<'a, B: Backend> Faulty<'a, B> {
 impl<B: Backend> Backend for Faulty<'_, B> {
     type Buffer<T: Pod + Send + Sync> = B::Buffer<T>;
     type Scene = FaultyScene<B::Scene>;
+    type Mesh = B::Mesh;
 
     fn info(&self) -> BackendInfo {
         self.inner.info()
@@ -62,6 +65,10 @@ impl<B: Backend> Backend for Faulty<'_, B> {
     fn upload_scene(&self, scene: &CompiledScene) -> Result<Self::Scene> {
         let inner = self.inner.upload_scene(&trace_paths::broken_scene(self.fault, scene))?;
         Ok(FaultyScene { inner, host: scene.clone() })
+    }
+
+    fn upload_mesh(&self, mesh: &LatticeMesh) -> Result<Self::Mesh> {
+        self.inner.upload_mesh(mesh)
     }
 
     fn scan(&self, input: &B::Buffer<u32>, output: &mut B::Buffer<u32>) -> Result<u32> {
@@ -110,5 +117,11 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         film: &mut B::Buffer<FilmTexel>,
     ) -> Result<()> {
         trace_paths::trace_paths(self.inner, self.fault, scene, params, film)
+    }
+
+    fn rasterize_lhb(&self, mesh: &Self::Mesh, views: &[View], params: &RasterizeLhbParams) -> Result<Lhb<Self>> {
+        let Lhb { size, view_count, offsets, elements, left_out } =
+            self.inner.rasterize_lhb(mesh, views, params)?;
+        Ok(Lhb { size, view_count, offsets, elements, left_out })
     }
 }

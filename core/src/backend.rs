@@ -1,9 +1,11 @@
 //! `Backend`: typed buffers and one method per kernel. The library's table of contents.
 
 use crate::error::Result;
+use crate::kernels::rasterize_lhb::{Lhb, RasterizeLhbParams};
 use crate::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use crate::kernels::trace::{Hit, Ray};
 use crate::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use crate::lattice::{LatticeMesh, View};
 use crate::scene::CompiledScene;
 use bytemuck::Pod;
 
@@ -29,6 +31,8 @@ pub trait Backend {
     type Buffer<T: Pod + Send + Sync>;
     /// A scene on the device: geometry, acceleration structure, materials, lights, texels.
     type Scene;
+    /// A snapped mesh on the device.
+    type Mesh;
 
     /// What this backend is.
     fn info(&self) -> BackendInfo;
@@ -59,6 +63,12 @@ pub trait Backend {
     /// # Errors
     /// As [`Backend::upload`].
     fn upload_scene(&self, scene: &CompiledScene) -> Result<Self::Scene>;
+
+    /// Makes a snapped mesh resident.
+    ///
+    /// # Errors
+    /// As [`Backend::upload`].
+    fn upload_mesh(&self, mesh: &LatticeMesh) -> Result<Self::Mesh>;
 
     /// Exclusive prefix sum; returns the total. Contract: [`crate::kernels::scan`].
     ///
@@ -122,4 +132,16 @@ pub trait Backend {
         params: &TracePathsParams,
         film: &mut Self::Buffer<FilmTexel>,
     ) -> Result<()>;
+
+    /// Every surface along the lines of many orthographic views. Contract: [`crate::kernels::rasterize_lhb`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] for parameters or views that are out of range, [`crate::Error::LimitExceeded`] or
+    /// [`crate::Error::OutOfMemory`] when the lists are too many or too long for the device.
+    fn rasterize_lhb(
+        &self,
+        mesh: &Self::Mesh,
+        views: &[View],
+        params: &RasterizeLhbParams,
+    ) -> Result<Lhb<Self>>;
 }

@@ -6,6 +6,7 @@ pub mod backend;
 pub mod bvh;
 pub mod error;
 pub mod kernels;
+pub mod lattice;
 pub mod math;
 pub mod scene;
 pub mod srgb;
