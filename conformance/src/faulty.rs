@@ -119,7 +119,12 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         trace_paths::trace_paths(self.inner, self.fault, scene, params, film)
     }
 
-    fn rasterize_lhb(&self, mesh: &Self::Mesh, views: &[View], params: &RasterizeLhbParams) -> Result<Lhb<Self>> {
+    fn rasterize_lhb(
+        &self,
+        mesh: &Self::Mesh,
+        views: &[View],
+        params: &RasterizeLhbParams,
+    ) -> Result<Lhb<Self>> {
         let Lhb { size, view_count, offsets, elements, left_out } =
             self.inner.rasterize_lhb(mesh, views, params)?;
         Ok(Lhb { size, view_count, offsets, elements, left_out })

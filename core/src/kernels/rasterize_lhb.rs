@@ -10,7 +10,7 @@
 //! `elements[offsets[i]..offsets[i + 1]]`, i = (v·N + y)·N + x, and is sorted by ([`LhbElement::depth`], triangle).
 //! Nothing is lost: every triangle that covers a pixel's centre is in its list, once.
 //! *Units.* Lattice steps; screen coordinates in 2⁻ˢ pixels, s = [`crate::lattice::subpixel_bits`]`(N)`; depths in 2⁻¹⁴ steps, away from
-//! the viewer, [`DEPTH_ORIGIN`] at the lattice's centre.
+//! the viewer, [`crate::lattice::DEPTH_ORIGIN`] at the lattice's centre.
 //!
 //! *Meaning.* All of it in integers; `>>` rounds down, as does ⌊ ⌋.
 //! 1. Vertex p has x, y as in [`View`] and z = forward·p.
@@ -24,7 +24,7 @@
 //!    centre.
 //!    With n_x = (z₁−z₀)(y₂−y₀) − (z₂−z₀)(y₁−y₀) and n_y = (z₂−z₀)(x₁−x₀) − (z₁−z₀)(x₂−x₀), and r(n) = ⌊(n + ⌊A/2⌋) / A⌋:
 //!    z(i, j) = z₀ + r(n_x·(X₀−x₀) + n_y·(Y₀−y₀)) + (i−i₀)·r(n_x·2ˢ) + (j−j₀)·r(n_y·2ˢ), clamped to the range of the vertices'
-//!    z. `depth` = z + [`DEPTH_ORIGIN`].
+//!    z. `depth` = z + [`crate::lattice::DEPTH_ORIGIN`].
 //!
 //! *How 32 bits suffice.* E is twice the area of a triangle on the screen, at most 2³⁰. n_x, n_y take 46 bits and the
 //! arguments of r 62, once per triangle; the sums are taken modulo 2³²: the exact z of a covered pixel is within the vertices'
@@ -47,7 +47,7 @@ use crate::accuracy::Accuracy;
 use crate::backend::Backend;
 use crate::error::{Error, Result};
 use crate::kernels::scan;
-use crate::lattice::{DEPTH_ORIGIN, View};
+use crate::lattice::View;
 use bytemuck::{Pod, Zeroable};
 use std::fmt;
 
@@ -151,7 +151,8 @@ impl RasterizeLhbParams {
         }
         crate::lattice::check_size(self.size)?;
         for (i, view) in views.iter().enumerate() {
-            view.check(self.size).map_err(|error| Error::invalid(format!("views[{i}]"), error.to_string()))?;
+            view.check(self.size)
+                .map_err(|error| Error::invalid(format!("views[{i}]"), error.to_string()))?;
         }
         let lists = views.len() as u64 * u64::from(self.size) * u64::from(self.size);
         let limit = scan::MAX_LEN as u64 - 1;

@@ -22,7 +22,8 @@ impl LatticeMesh {
     /// [`MAX_TRIANGLES`].
     pub fn new(vertices: Vec<[i16; 3]>, triangles: Vec<[u32; 3]>) -> Result<Self> {
         check_count(triangles.len())?;
-        let far = |v: &[i16; 3]| v.iter().map(|&c| i64::from(c).pow(2)).sum::<i64>() > i64::from(REACH).pow(2);
+        let far =
+            |v: &[i16; 3]| v.iter().map(|&c| i64::from(c).pow(2)).sum::<i64>() > i64::from(REACH).pow(2);
         if let Some(i) = vertices.iter().position(far) {
             let what = format!("{:?} is farther than {REACH} from the centre", vertices[i]);
             return Err(Error::invalid(format!("vertices[{i}]"), what));
@@ -41,10 +42,7 @@ impl LatticeMesh {
     /// # Errors
     /// [`Error::InvalidInput`] for a corner out of the lattice's reach, [`Error::LimitExceeded`] beyond
     /// [`MAX_TRIANGLES`].
-    pub fn snap(
-        lattice: &Lattice,
-        triangles: impl ExactSizeIterator<Item = [DVec3; 3]>,
-    ) -> Result<Self> {
+    pub fn snap(lattice: &Lattice, triangles: impl ExactSizeIterator<Item = [DVec3; 3]>) -> Result<Self> {
         check_count(triangles.len())?;
         let mut vertices = Vec::new();
         let mut numbers: HashMap<[i16; 3], u32> = HashMap::new();
@@ -53,7 +51,10 @@ impl LatticeMesh {
             let mut triangle = [0; 3];
             for (corner, number) in corners.into_iter().zip(&mut triangle) {
                 let Some(point) = lattice.snap(corner) else {
-                    return Err(Error::invalid(format!("triangles[{i}]"), format!("{corner} is off the lattice")));
+                    return Err(Error::invalid(
+                        format!("triangles[{i}]"),
+                        format!("{corner} is off the lattice"),
+                    ));
                 };
                 *number = *numbers.entry(point).or_insert_with(|| {
                     vertices.push(point);

@@ -83,7 +83,8 @@ fn the_farthest_point_is_in_reach() {
 /// G10: bounds flat in one, two or three axes.
 #[test]
 fn flat_bounds_have_a_lattice() {
-    for points in [vec![], vec![DVec3::ONE], vec![DVec3::ONE, DVec3::X], vec![DVec3::ONE, DVec3::X, DVec3::Y]] {
+    for points in [vec![], vec![DVec3::ONE], vec![DVec3::ONE, DVec3::X], vec![DVec3::ONE, DVec3::X, DVec3::Y]]
+    {
         let lattice = Lattice::around(points.iter().copied()).unwrap();
         assert!(lattice.step() > 0.0);
         assert!(points.iter().all(|&p| lattice.snap(p).is_some()));

@@ -59,7 +59,11 @@ impl View {
         let right = forward.cross(axis).normalize();
         let down = forward.cross(right);
         let scale = 16_384.0 * f64::from(size) / f64::from(size.next_power_of_two());
-        Ok(Self { right: quantised(right, scale), down: quantised(down, scale), forward: quantised(forward, 16_384.0) })
+        Ok(Self {
+            right: quantised(right, scale),
+            down: quantised(down, scale),
+            forward: quantised(forward, 16_384.0),
+        })
     }
 
     /// The view direction as quantised: unit length to 2⁻¹⁴.
@@ -78,7 +82,8 @@ impl View {
         for (name, row, length) in
             [("right", self.right, scale), ("down", self.down, scale), ("forward", self.forward, 16_384.0)]
         {
-            let squared: i64 = row.iter().map(|&c| i64::from(c).saturating_mul(c.into())).fold(0, i64::saturating_add);
+            let squared: i64 =
+                row.iter().map(|&c| i64::from(c).saturating_mul(c.into())).fold(0, i64::saturating_add);
             let most = length + 0.75_f64.sqrt();
             if squared as f64 > most * most || row[3] != 0 {
                 let what = format!("{row:?} is longer than {length} or has a fourth component");
