@@ -25,7 +25,7 @@ impl<T> From<Vec<T>> for CpuBuffer<T> {
     }
 }
 
-fn out_of_memory<T>(len: usize) -> Error {
+pub(crate) fn out_of_memory<T>(len: usize) -> Error {
     let bytes = (len as u64).saturating_mul(size_of::<T>() as u64);
     Error::OutOfMemory { device: "host".into(), bytes }
 }

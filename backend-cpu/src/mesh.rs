@@ -7,22 +7,21 @@ use twinlight_core::lattice::LatticeMesh;
 /// A resident mesh.
 #[derive(Debug, Clone)]
 pub struct CpuMesh {
-    vertices: Vec<[i16; 3]>,
-    triangles: Vec<[u32; 3]>,
+    /// Positions, an array per axis, so that eight are rotated at once.
+    pub(crate) axes: [Vec<i16>; 3],
+    /// Vertex numbers; every one is below the length of the axes.
+    pub(crate) triangles: Vec<[u32; 3]>,
 }
 
 impl CpuMesh {
     pub(crate) fn new(mesh: &LatticeMesh) -> Result<Self> {
-        Ok(Self { vertices: try_copy(mesh.vertices())?, triangles: try_copy(mesh.triangles())? })
-    }
-
-    /// Positions, lattice steps.
-    pub(crate) fn vertices(&self) -> &[[i16; 3]] {
-        &self.vertices
-    }
-
-    /// Vertex numbers, all of them in range.
-    pub(crate) fn triangles(&self) -> &[[u32; 3]] {
-        &self.triangles
+        let mut axes = [const { Vec::new() }; 3];
+        for (axis, values) in axes.iter_mut().enumerate() {
+            values
+                .try_reserve_exact(mesh.vertices().len())
+                .map_err(|_| crate::buffer::out_of_memory::<i16>(mesh.vertices().len()))?;
+            values.extend(mesh.vertices().iter().map(|p| p[axis]));
+        }
+        Ok(Self { axes, triangles: try_copy(mesh.triangles())? })
     }
 }

@@ -1,0 +1,83 @@
+//! Fragments into sorted lists.
+
+use super::setup::element;
+use super::{Fragment, ViewLists};
+use twinlight_core::kernels::rasterize_lhb::{CAP_NEAR, RasterizeLhbParams};
+
+/// Lists up to this long are sorted by insertion.
+const SHORT: usize = 24;
+
+/// Working memory.
+#[derive(Debug, Default)]
+pub(super) struct Lists {
+    /// Per pixel: first a count, then where the next fragment goes, which ends as where the list ends.
+    cursors: Vec<u32>,
+    keys: Vec<u64>,
+}
+
+impl Lists {
+    /// Counts, scans, scatters and sorts.
+    #[inline(always)]
+    pub(super) fn sort(&mut self, fragments: &[Fragment], params: &RasterizeLhbParams) -> ViewLists {
+        let pixels = params.size as usize * params.size as usize;
+        self.cursors.clear();
+        self.cursors.resize(pixels, 0);
+        for fragment in fragments {
+            self.cursors[fragment.pixel as usize] += 1;
+        }
+        let mut sum = 0;
+        for cursor in &mut self.cursors {
+            sum += std::mem::replace(cursor, sum);
+        }
+        self.keys.resize(fragments.len(), 0);
+        for fragment in fragments {
+            let cursor = &mut self.cursors[fragment.pixel as usize];
+            self.keys[*cursor as usize] = fragment.key;
+            *cursor += 1;
+        }
+        let mut begin = 0;
+        for &end in &self.cursors {
+            sort_list(&mut self.keys[begin..end as usize]);
+            begin = end as usize;
+        }
+        self.finish(params)
+    }
+
+    /// Applies the cap.
+    fn finish(&self, params: &RasterizeLhbParams) -> ViewLists {
+        let mut lists = ViewLists::default();
+        if params.layer_cap == 0 {
+            lists.elements.extend(self.keys.iter().map(|&key| element(key)));
+            lists.ends.clone_from(&self.cursors);
+            return lists;
+        }
+        let mut begin = 0;
+        for &end in &self.cursors {
+            let list = &self.keys[begin..end as usize];
+            let kept = list.len().min(params.layer_cap as usize);
+            let kept = if params.cap_side == CAP_NEAR { &list[..kept] } else { &list[list.len() - kept..] };
+            lists.elements.extend(kept.iter().map(|&key| element(key)));
+            lists.ends.push(lists.elements.len() as u32);
+            lists.left_out.push((list.len() - kept.len()) as u32);
+            begin = end as usize;
+        }
+        lists
+    }
+}
+
+#[inline(always)]
+fn sort_list(keys: &mut [u64]) {
+    if keys.len() > SHORT {
+        keys.sort_unstable();
+        return;
+    }
+    for i in 1..keys.len() {
+        let key = keys[i];
+        let mut place = i;
+        while place > 0 && keys[place - 1] > key {
+            keys[place] = keys[place - 1];
+            place -= 1;
+        }
+        keys[place] = key;
+    }
+}

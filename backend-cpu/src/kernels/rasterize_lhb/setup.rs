@@ -1,0 +1,139 @@
+//! What is worked out once per triangle and view: edges and the plane of depth.
+
+use super::project::{Screen, distance};
+use crate::mesh::CpuMesh;
+use twinlight_core::kernels::rasterize_lhb::LhbElement;
+use twinlight_core::lattice::{DEPTH_ORIGIN, View};
+
+/// A triangle on the screen, turned so that its area is positive.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Setup {
+    /// Vertex numbers, in the order of the corners.
+    vertices: [u32; 3],
+    /// Screen coordinates.
+    corners: [[i32; 2]; 3],
+    /// Twice the area.
+    area: i32,
+    /// Twice the triangle's number, and its facing.
+    surface: u32,
+    /// The first column and row whose centres are within the bounds.
+    pub(super) first: [i32; 2],
+    /// Columns and rows whose centres are.
+    pub(super) extent: [i32; 2],
+    /// Edge functions at the centre of the first pixel, less 1 for edges whose points are not inside.
+    pub(super) edges: [i32; 3],
+    /// What they grow by from column to column.
+    pub(super) across: [i32; 3],
+    /// From row to row.
+    pub(super) along: [i32; 3],
+}
+
+/// The plane of depth over a triangle's pixels.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plane {
+    at_first: i32,
+    pub(super) across: i32,
+    along: i32,
+    least: i32,
+    greatest: i32,
+    surface: u32,
+}
+
+/// The set-up of a triangle, or `None` when it is seen edge-on.
+#[inline(always)]
+pub(super) fn setup(mesh: &CpuMesh, screen: &Screen, triangle: u32) -> Option<Setup> {
+    let mut vertices = mesh.triangles[triangle as usize];
+    let mut corners = [screen.at(vertices[0]), screen.at(vertices[1]), screen.at(vertices[2])];
+    let mut area = edge(corners[0], corners[1], corners[2]);
+    if area == 0 {
+        return None;
+    }
+    let front = area < 0;
+    if front {
+        vertices.swap(1, 2);
+        corners.swap(1, 2);
+        area = -area;
+    }
+    let (bits, half) = (screen.bits, 1_i32 << (screen.bits - 1));
+    let mut first = [0; 2];
+    let mut extent = [0; 2];
+    for axis in 0..2 {
+        let [a, b, c] = [corners[0][axis], corners[1][axis], corners[2][axis]];
+        first[axis] = (a.min(b).min(c) + half - 1) >> bits;
+        extent[axis] = ((a.max(b).max(c) + half) >> bits) - first[axis];
+    }
+    let centre = [(first[0] << bits) + half, (first[1] << bits) + half];
+    let mut edges = [0; 3];
+    let mut across = [0; 3];
+    let mut along = [0; 3];
+    for i in 0..3 {
+        let (from, to) = (corners[i], corners[(i + 1) % 3]);
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        // Without branches: nobody can predict where an edge points.
+        let owns = i32::from((dy < 0) | ((dy == 0) & (dx > 0)));
+        edges[i] = edge(from, to, centre) - 1 + owns;
+        across[i] = -(dy << bits);
+        along[i] = dx << bits;
+    }
+    let surface = triangle << 1 | u32::from(front);
+    Some(Setup { vertices, corners, area, surface, first, extent, edges, across, along })
+}
+
+/// Twice the area of the triangle from `a` to `b` to `p`, positive when they run clockwise as seen.
+#[inline(always)]
+fn edge(a: [i32; 2], b: [i32; 2], p: [i32; 2]) -> i32 {
+    (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+}
+
+impl Setup {
+    /// The plane of depth.
+    #[inline(always)]
+    pub(super) fn plane(&self, mesh: &CpuMesh, view: &View, bits: u32) -> Plane {
+        let [z0, z1, z2] = [0, 1, 2].map(|i| distance(mesh, view, self.vertices[i]));
+        let [p0, p1, p2] = self.corners;
+        let (dz1, dz2) = (i64::from(z1 - z0), i64::from(z2 - z0));
+        let nx = dz1 * i64::from(p2[1] - p0[1]) - dz2 * i64::from(p1[1] - p0[1]);
+        let ny = dz2 * i64::from(p1[0] - p0[0]) - dz1 * i64::from(p2[0] - p0[0]);
+        let half = 1 << (bits - 1);
+        let to = [0, 1].map(|axis| i64::from((self.first[axis] << bits) + half - p0[axis]));
+        let single = self.extent[0] * self.extent[1] == 1;
+        Plane {
+            at_first: z0.wrapping_add(divided(nx * to[0] + ny * to[1], self.area)),
+            // Divisions are the dearest part of a small triangle.
+            across: if single { 0 } else { divided(nx << bits, self.area) },
+            along: if single { 0 } else { divided(ny << bits, self.area) },
+            least: z0.min(z1).min(z2),
+            greatest: z0.max(z1).max(z2),
+            surface: self.surface,
+        }
+    }
+}
+
+/// The nearest integer to n / area, halves up, modulo 2³².
+#[inline(always)]
+fn divided(n: i64, area: i32) -> i32 {
+    (n + i64::from(area >> 1)).div_euclid(i64::from(area)) as i32
+}
+
+impl Plane {
+    /// z before clamping, `column` and `row` counted from the first pixel.
+    #[inline(always)]
+    pub(super) fn at(&self, column: i32, row: i32) -> i32 {
+        self.at_first
+            .wrapping_add(column.wrapping_mul(self.across))
+            .wrapping_add(row.wrapping_mul(self.along))
+    }
+
+    /// What the list of a pixel with that z is sorted by.
+    #[inline(always)]
+    pub(super) fn key(&self, z: i32) -> u64 {
+        let depth = z.max(self.least).min(self.greatest) + DEPTH_ORIGIN;
+        u64::from(depth as u32) << 32 | u64::from(self.surface)
+    }
+}
+
+/// The element that a key stands for.
+#[inline(always)]
+pub(super) fn element(key: u64) -> LhbElement {
+    LhbElement { surface: key as u32, depth: (key >> 32) as u32 }
+}
