@@ -81,12 +81,11 @@ impl<'a> Sink<'a> {
     /// The pixels of a row from `begin` to before `end`.
     #[inline(always)]
     fn put_span(&mut self, begin: i32, end: i32, row: i32) {
-        let mut pixel = self.corner + row as u32 * self.size + begin as u32;
+        let first = self.corner + row as u32 * self.size;
         let mut z = self.plane.at(begin, row);
-        for _ in begin..end {
-            self.fragments.push(Fragment { key: self.plane.key(z), pixel });
+        for column in begin..end {
+            self.fragments.push(Fragment { key: self.plane.key(z), pixel: first + column as u32 });
             z = z.wrapping_add(self.plane.across);
-            pixel += 1;
         }
     }
 }

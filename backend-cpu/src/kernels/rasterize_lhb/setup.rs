@@ -86,19 +86,31 @@ fn edge(a: [i32; 2], b: [i32; 2], p: [i32; 2]) -> i32 {
 }
 
 impl Setup {
+    /// Edge functions at a pixel of the bounds, `column` and `row` counted from the first.
+    #[inline(always)]
+    pub(super) fn edges_at(&self, column: i32, row: i32) -> [i32; 3] {
+        let mut edges = self.edges;
+        for (edge, (across, along)) in edges.iter_mut().zip(self.across.iter().zip(&self.along)) {
+            *edge = edge.wrapping_add(column.wrapping_mul(*across)).wrapping_add(row.wrapping_mul(*along));
+        }
+        edges
+    }
+
     /// The plane of depth.
     #[inline(always)]
     pub(super) fn plane(&self, mesh: &CpuMesh, view: &View, bits: u32) -> Plane {
-        let [z0, z1, z2] = [0, 1, 2].map(|i| distance(mesh, view, self.vertices[i]));
+        let [v0, v1, v2] = self.vertices;
+        let [z0, z1, z2] = [distance(mesh, view, v0), distance(mesh, view, v1), distance(mesh, view, v2)];
         let [p0, p1, p2] = self.corners;
         let (dz1, dz2) = (i64::from(z1 - z0), i64::from(z2 - z0));
         let nx = dz1 * i64::from(p2[1] - p0[1]) - dz2 * i64::from(p1[1] - p0[1]);
         let ny = dz2 * i64::from(p1[0] - p0[0]) - dz1 * i64::from(p2[0] - p0[0]);
         let half = 1 << (bits - 1);
-        let to = [0, 1].map(|axis| i64::from((self.first[axis] << bits) + half - p0[axis]));
+        let to_x = i64::from((self.first[0] << bits) + half - p0[0]);
+        let to_y = i64::from((self.first[1] << bits) + half - p0[1]);
         let single = self.extent[0] * self.extent[1] == 1;
         Plane {
-            at_first: z0.wrapping_add(divided(nx * to[0] + ny * to[1], self.area)),
+            at_first: z0.wrapping_add(divided(nx * to_x + ny * to_y, self.area)),
             // Divisions are the dearest part of a small triangle.
             across: if single { 0 } else { divided(nx << bits, self.area) },
             along: if single { 0 } else { divided(ny << bits, self.area) },

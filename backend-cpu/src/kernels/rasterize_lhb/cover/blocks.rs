@@ -23,15 +23,12 @@ pub(super) fn blocks(setup: &Setup, sink: &mut Sink<'_>) {
 #[inline(always)]
 fn block(setup: &Setup, sink: &mut Sink<'_>, begin: [i32; 2], end: [i32; 2]) {
     let (width, height) = (end[0] - begin[0] - 1, end[1] - begin[1] - 1);
-    let mut corner = [0; 3];
-    let (mut least, mut greatest) = ([0; 3], [0; 3]);
+    let mut corner = setup.edges_at(begin[0], begin[1]);
+    let (mut least, mut greatest) = (corner, corner);
     for i in 0..3 {
-        corner[i] = setup.edges[i]
-            .wrapping_add(begin[0].wrapping_mul(setup.across[i]))
-            .wrapping_add(begin[1].wrapping_mul(setup.along[i]));
         let (across, along) = (width * setup.across[i], height * setup.along[i]);
-        least[i] = corner[i] + across.min(0) + along.min(0);
-        greatest[i] = corner[i] + across.max(0) + along.max(0);
+        least[i] += across.min(0) + along.min(0);
+        greatest[i] += across.max(0) + along.max(0);
     }
     if outside(greatest) != 0 {
         return;

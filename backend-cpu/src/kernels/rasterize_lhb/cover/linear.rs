@@ -13,13 +13,7 @@ pub(super) fn linear(setup: &Setup, sink: &mut Sink<'_>) {
         let end = pixels.min(begin + RUN);
         let mut covered = 0_u32;
         for pixel in begin..end {
-            let (column, row) = (pixel % columns, pixel / columns);
-            let mut edges = [0; 3];
-            for i in 0..3 {
-                edges[i] = setup.edges[i]
-                    .wrapping_add(column.wrapping_mul(setup.across[i]))
-                    .wrapping_add(row.wrapping_mul(setup.along[i]));
-            }
+            let edges = setup.edges_at(pixel % columns, pixel / columns);
             covered |= (outside(edges) ^ 1) << (pixel - begin);
         }
         while covered != 0 {
