@@ -1,6 +1,7 @@
 //! [`CpuBackend`]: checks the caller's lengths, then runs a kernel in a thread pool and turns a panic into an error.
 
 use crate::buffer::{CpuBuffer, try_copy, try_zeroed};
+use crate::kernels::query_lhb::LhbData;
 use crate::scratch::Scratch;
 use crate::simd::Isa;
 use crate::{CpuMesh, CpuScene, kernels, processor, simd};
@@ -9,7 +10,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use twinlight_core::kernels::rasterize_lhb::{Lhb, RasterizeLhbParams};
+use twinlight_core::kernels::query_lhb::LhbQuery;
+use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
@@ -221,6 +223,37 @@ impl Backend for CpuBackend {
         params.check(views)?;
         self.run("rasterize_lhb", || kernels::rasterize_lhb::rasterize_lhb(self.isa, mesh, views, params))
     }
+
+    fn query_lhb(
+        &self,
+        mesh: &CpuMesh,
+        lhb: &Lhb<Self>,
+        views: &[View],
+        queries: &CpuBuffer<LhbQuery>,
+        hits: &mut CpuBuffer<LhbElement>,
+    ) -> Result<()> {
+        let (queries, hits) = (queries.as_slice(), hits.as_mut_slice());
+        check_equal("query_lhb hits", hits.len(), queries.len())?;
+        let lhb = lhb_data(mesh, lhb, views)?;
+        self.run("query_lhb", || {
+            kernels::query_lhb::query_lhb(self.isa, lhb, queries, hits);
+            Ok(())
+        })
+    }
+}
+
+/// What queries read, if it belongs together.
+fn lhb_data<'a>(mesh: &'a CpuMesh, lhb: &'a Lhb<CpuBackend>, views: &'a [View]) -> Result<LhbData<'a>> {
+    check_equal("query_lhb views", views.len(), lhb.view_count as usize)?;
+    let pixels = lhb.view_count as usize * lhb.size as usize * lhb.size as usize;
+    check_equal("query_lhb offsets", lhb.offsets.as_slice().len(), pixels + 1)?;
+    Ok(LhbData {
+        size: lhb.size,
+        views,
+        offsets: lhb.offsets.as_slice(),
+        elements: lhb.elements.as_slice(),
+        planes: &mesh.planes,
+    })
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! A snapped mesh in host memory, laid out for the rasterizer.
 
-use crate::buffer::try_copy;
+use crate::buffer::{try_collect, try_copy};
 use twinlight_core::Result;
-use twinlight_core::lattice::LatticeMesh;
+use twinlight_core::lattice::{LatticeMesh, LatticePlane};
 
 /// A resident mesh.
 #[derive(Debug, Clone)]
@@ -11,17 +11,17 @@ pub struct CpuMesh {
     pub(crate) axes: [Vec<i16>; 3],
     /// Vertex numbers; every one is below the length of the axes.
     pub(crate) triangles: Vec<[u32; 3]>,
+    /// The triangles' planes.
+    pub(crate) planes: Vec<LatticePlane>,
 }
 
 impl CpuMesh {
     pub(crate) fn new(mesh: &LatticeMesh) -> Result<Self> {
-        let mut axes = [const { Vec::new() }; 3];
-        for (axis, values) in axes.iter_mut().enumerate() {
-            values
-                .try_reserve_exact(mesh.vertices().len())
-                .map_err(|_| crate::buffer::out_of_memory::<i16>(mesh.vertices().len()))?;
-            values.extend(mesh.vertices().iter().map(|p| p[axis]));
-        }
-        Ok(Self { axes, triangles: try_copy(mesh.triangles())? })
+        let [x, y, z] = [0, 1, 2].map(|axis| try_collect(mesh.vertices().iter().map(|p| p[axis])));
+        Ok(Self {
+            axes: [x?, y?, z?],
+            triangles: try_copy(mesh.triangles())?,
+            planes: try_collect(mesh.planes())?,
+        })
     }
 }

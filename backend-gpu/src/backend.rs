@@ -2,12 +2,13 @@
 
 use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
-use crate::kernels::{rasterize_lhb, scan, shade_primary, sort, trace, trace_paths};
+use crate::kernels::{query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths};
 use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
 use crate::strict::Mode;
 use bytemuck::Pod;
-use twinlight_core::kernels::rasterize_lhb::{Lhb, RasterizeLhbParams};
+use twinlight_core::kernels::query_lhb::LhbQuery;
+use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
@@ -137,5 +138,16 @@ impl Backend for GpuBackend {
         params: &RasterizeLhbParams,
     ) -> Result<Lhb<Self>> {
         rasterize_lhb::run(&self.device, mesh, views, params)
+    }
+
+    fn query_lhb(
+        &self,
+        mesh: &GpuMesh,
+        lhb: &Lhb<Self>,
+        views: &[View],
+        queries: &GpuBuffer<LhbQuery>,
+        hits: &mut GpuBuffer<LhbElement>,
+    ) -> Result<()> {
+        query_lhb::run(&self.device, mesh, lhb, views, queries, hits)
     }
 }

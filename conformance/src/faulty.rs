@@ -8,7 +8,8 @@ mod trace_paths;
 
 use crate::faults::Fault;
 use bytemuck::Pod;
-use twinlight_core::kernels::rasterize_lhb::{Lhb, RasterizeLhbParams};
+use twinlight_core::kernels::query_lhb::LhbQuery;
+use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
@@ -125,8 +126,17 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         views: &[View],
         params: &RasterizeLhbParams,
     ) -> Result<Lhb<Self>> {
-        let Lhb { size, view_count, offsets, elements, left_out } =
-            self.inner.rasterize_lhb(mesh, views, params)?;
-        Ok(Lhb { size, view_count, offsets, elements, left_out })
+        self.inner.rasterize_lhb(mesh, views, params)
+    }
+
+    fn query_lhb(
+        &self,
+        mesh: &Self::Mesh,
+        lhb: &Lhb<Self>,
+        views: &[View],
+        queries: &B::Buffer<LhbQuery>,
+        hits: &mut B::Buffer<LhbElement>,
+    ) -> Result<()> {
+        self.inner.query_lhb(mesh, lhb, views, queries, hits)
     }
 }

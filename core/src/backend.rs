@@ -1,7 +1,8 @@
 //! `Backend`: typed buffers and one method per kernel. The library's table of contents.
 
 use crate::error::Result;
-use crate::kernels::rasterize_lhb::{Lhb, RasterizeLhbParams};
+use crate::kernels::query_lhb::LhbQuery;
+use crate::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use crate::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use crate::kernels::trace::{Hit, Ray};
 use crate::kernels::trace_paths::{FilmTexel, TracePathsParams};
@@ -144,4 +145,17 @@ pub trait Backend {
         views: &[View],
         params: &RasterizeLhbParams,
     ) -> Result<Lhb<Self>>;
+
+    /// What points see along the directions of views. Contract: [`crate::kernels::query_lhb`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] when the lengths differ, or the views are not as many as `lhb` has.
+    fn query_lhb(
+        &self,
+        mesh: &Self::Mesh,
+        lhb: &Lhb<Self>,
+        views: &[View],
+        queries: &Self::Buffer<LhbQuery>,
+        hits: &mut Self::Buffer<LhbElement>,
+    ) -> Result<()>;
 }

@@ -10,9 +10,11 @@
 //! one place stay at one place, so a closed mesh stays closed.
 
 mod mesh;
+mod plane;
 mod view;
 
 pub use mesh::LatticeMesh;
+pub use plane::LatticePlane;
 pub use view::{DEPTH_ORIGIN, MAX_SIZE, View, subpixel_bits};
 
 pub(crate) use view::check_size;

@@ -16,7 +16,9 @@ use crate::{CpuBackend, CpuBuffer};
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 use twinlight_core::Result;
-use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams, check_elements};
+use twinlight_core::kernels::rasterize_lhb::{
+    Lhb, LhbBuffers, LhbElement, RasterizeLhbParams, check_elements,
+};
 use twinlight_core::lattice::View;
 
 mod cover;
@@ -136,7 +138,7 @@ fn gather(views: &[ViewLists], view_count: usize, params: &RasterizeLhbParams) -
         }
     });
     left_out.par_chunks_mut(pixels).zip(views).for_each(|(part, view)| part.copy_from_slice(&view.left_out));
-    Ok(Lhb {
+    Ok(LhbBuffers {
         size: params.size,
         view_count: view_count as u32,
         offsets: CpuBuffer::from(offsets),

@@ -3,6 +3,7 @@
 //! To add one: write the two files, add the module here and its [`KernelSource`] to [`ALL`], and the method to
 //! `backend.rs`. The tests `sources` and `layout` find it through [`ALL`].
 
+pub mod query_lhb;
 pub mod rasterize_lhb;
 pub mod scan;
 pub mod shade_primary;

@@ -5,7 +5,7 @@
 // oracle conformance/src/oracle/rasterize_lhb.rs
 //! `rasterize_lhb`: layered hit buffers, every surface along every pixel's line, for many orthographic views at once.
 //!
-//! *Shapes.* A [`crate::lattice::LatticeMesh`] and V views of N × N pixels in; out, an [`Lhb`]: `offsets[V·N² + 1]` and
+//! *Shapes.* A [`crate::lattice::LatticeMesh`] and V views of N × N pixels in; out, [`LhbBuffers`]: `offsets[V·N² + 1]` and
 //! `elements[offsets[V·N²]]`. The list of view v and pixel (column x, row y) is
 //! `elements[offsets[i]..offsets[i + 1]]`, i = (v·N + y)·N + x, and is sorted by ([`LhbElement::depth`], triangle).
 //! Nothing is lost: every triangle that covers a pixel's centre is in its list, once.
@@ -49,7 +49,6 @@ use crate::error::{Error, Result};
 use crate::kernels::scan;
 use crate::lattice::View;
 use bytemuck::{Pod, Zeroable};
-use std::fmt;
 
 /// Every output is decided by integers.
 pub const ACCURACY: Accuracy = Accuracy::Exact {
@@ -111,25 +110,23 @@ impl LhbElement {
     }
 }
 
-/// Layered hit buffers on a device.
-pub struct Lhb<B: Backend + ?Sized> {
+/// Layered hit buffers on a device: `O` holds `u32`, `E` holds [`LhbElement`].
+#[derive(Debug, Clone)]
+pub struct LhbBuffers<O, E> {
     /// Pixels per row and column of every view.
     pub size: u32,
     /// Number of views.
     pub view_count: u32,
     /// Where each pixel's list begins, and the number of elements.
-    pub offsets: B::Buffer<u32>,
+    pub offsets: O,
     /// The lists.
-    pub elements: B::Buffer<LhbElement>,
+    pub elements: E,
     /// How many elements the cap left out, per pixel; empty without a cap.
-    pub left_out: B::Buffer<u32>,
+    pub left_out: O,
 }
 
-impl<B: Backend + ?Sized> fmt::Debug for Lhb<B> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Lhb({} views of {}x{})", self.view_count, self.size, self.size)
-    }
-}
+/// [`LhbBuffers`] in a backend's buffers.
+pub type Lhb<B> = LhbBuffers<<B as Backend>::Buffer<u32>, <B as Backend>::Buffer<LhbElement>>;
 
 impl RasterizeLhbParams {
     /// All layers of views of `size` by `size` pixels.

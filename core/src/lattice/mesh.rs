@@ -1,6 +1,6 @@
 //! Meshes on the lattice.
 
-use super::{Lattice, REACH};
+use super::{Lattice, LatticePlane, REACH};
 use crate::error::{Error, Result};
 use crate::kernels::rasterize_lhb::MAX_TRIANGLES;
 use crate::scene::CompiledScene;
@@ -83,6 +83,11 @@ impl LatticeMesh {
     /// Vertex numbers.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
+    }
+
+    /// The plane of every triangle.
+    pub fn planes(&self) -> impl ExactSizeIterator<Item = LatticePlane> + '_ {
+        self.triangles.iter().map(|t| LatticePlane::of(t.map(|v| self.vertices[v as usize])))
     }
 
     /// The triangles of `self`, then those of `other`.

@@ -1,0 +1,112 @@
+// kernel family: query_lhb
+// contract core/src/kernels/query_lhb.rs
+// cpu backend-cpu/src/kernels/query_lhb.rs
+// gpu backend-gpu/src/kernels/query_lhb.wgsl
+// oracle conformance/src/oracle/query_lhb.rs
+//! `query_lhb`: in the order in which the queries are given. Callers who sort them by view keep that view's lists in the
+//! core's cache.
+
+use crate::parallel::fill_chunks;
+use crate::simd::{Isa, Kernel, Width};
+use twinlight_core::kernels::query_lhb::{CLEARANCE, LhbQuery, NO_ELEMENT};
+use twinlight_core::kernels::rasterize_lhb::LhbElement;
+use twinlight_core::lattice::{DEPTH_ORIGIN, LatticePlane, View, subpixel_bits};
+
+/// Layered hit buffers and what queries need beside them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LhbData<'a> {
+    pub(crate) size: u32,
+    pub(crate) views: &'a [View],
+    pub(crate) offsets: &'a [u32],
+    pub(crate) elements: &'a [LhbElement],
+    pub(crate) planes: &'a [LatticePlane],
+}
+
+const NOTHING: LhbElement = LhbElement { surface: NO_ELEMENT, depth: 0 };
+
+pub(crate) fn query_lhb(isa: Isa, lhb: LhbData<'_>, queries: &[LhbQuery], hits: &mut [LhbElement]) {
+    fill_chunks(isa, hits, |first, hits| Chunk { lhb, queries: &queries[first..][..hits.len()], hits });
+}
+
+struct Chunk<'a> {
+    lhb: LhbData<'a>,
+    queries: &'a [LhbQuery],
+    hits: &'a mut [LhbElement],
+}
+
+impl Kernel for Chunk<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<W: Width>(self, _: W) {
+        for (query, hit) in self.queries.iter().zip(self.hits) {
+            *hit = look_up(&self.lhb, query);
+        }
+    }
+}
+
+/// The element that a query meets.
+#[inline(always)]
+pub(crate) fn look_up(lhb: &LhbData<'_>, query: &LhbQuery) -> LhbElement {
+    let (number, reversed) = (query.ray >> 1, query.ray & 1);
+    let Some(view) = lhb.views.get(number as usize) else { return NOTHING };
+    // [1] project
+    let bits = subpixel_bits(lhb.size);
+    let middle = ((lhb.size << (bits + 14)) + (1 << 14)) as i32;
+    let edge = (lhb.size << bits) as i32 - 1;
+    let x = ((dot(view.right, query.position).wrapping_add(middle)) >> 15).wrapping_add(query.offset[0]);
+    let y = ((dot(view.down, query.position).wrapping_add(middle)) >> 15).wrapping_add(query.offset[1]);
+    let z = dot(view.forward, query.position).wrapping_add(DEPTH_ORIGIN);
+    let (column, row) = (x.clamp(0, edge) as u32 >> bits, y.clamp(0, edge) as u32 >> bits);
+    // [2] walk the list
+    let pixel = (number * lhb.size + row) * lhb.size + column;
+    let (begin, end) = (lhb.offsets[pixel as usize], lhb.offsets[pixel as usize + 1]);
+    let list = &lhb.elements[begin as usize..end as usize];
+    if reversed == 0 {
+        ahead(lhb, query, list.iter(), z, 0)
+    } else {
+        ahead(lhb, query, list.iter().rev(), z, 1)
+    }
+}
+
+/// The first element of `list` that lies ahead.
+#[inline(always)]
+fn ahead<'a>(
+    lhb: &LhbData<'_>,
+    query: &LhbQuery,
+    list: impl Iterator<Item = &'a LhbElement>,
+    z: i32,
+    reversed: u32,
+) -> LhbElement {
+    let window = query.window as i32;
+    for element in list {
+        let beyond = if reversed == 0 { element.depth as i32 - z } else { z - element.depth as i32 };
+        if beyond < -window {
+            continue;
+        }
+        let seen = LhbElement { surface: element.surface ^ reversed, depth: element.depth };
+        if beyond > window || is_entered(lhb, query, seen.surface) {
+            return seen;
+        }
+    }
+    NOTHING
+}
+
+/// Whether the query's position is before the plane of a surface, on the side that it shows, and that is the side that the
+/// query left its own surface on.
+#[inline(always)]
+fn is_entered(lhb: &LhbData<'_>, query: &LhbQuery, surface: u32) -> bool {
+    if (surface ^ query.leaves) & 1 != 0 || surface >> 1 == query.leaves >> 1 {
+        return false;
+    }
+    let Some(plane) = lhb.planes.get((surface >> 1) as usize) else { return false };
+    let [x, y, z] = plane.normal.map(i32::from);
+    let side = dot([x, y, z, 0], query.position).wrapping_sub(plane.offset);
+    if surface & 1 == 1 { side > CLEARANCE } else { side < -CLEARANCE }
+}
+
+#[inline(always)]
+fn dot(row: [i32; 4], p: [i32; 3]) -> i32 {
+    let sum = row[0].wrapping_mul(p[0]).wrapping_add(row[1].wrapping_mul(p[1]));
+    sum.wrapping_add(row[2].wrapping_mul(p[2]))
+}
