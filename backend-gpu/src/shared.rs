@@ -30,6 +30,8 @@ shared! {
     INTERSECT = "intersect";
     /// Twin of `transport::light`; wants `params.environment`.
     LIGHT = "light";
+    /// Twin of `math::octahedral`; wants a global `nearest_map: array<u32>`.
+    OCTAHEDRAL = "octahedral";
     /// Twin of `transport::offset`.
     OFFSET = "offset";
     /// Twin of `scene::compiled`, and the scene's bindings.

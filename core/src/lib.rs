@@ -4,6 +4,8 @@
 pub mod accuracy;
 pub mod backend;
 pub mod bvh;
+pub mod circle;
+pub mod directions;
 pub mod error;
 pub mod kernels;
 pub mod lattice;

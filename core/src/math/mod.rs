@@ -2,6 +2,7 @@
 
 pub mod fixed;
 pub mod hash;
+pub mod octahedral;
 pub mod sobol;
 pub mod trig;
 pub mod vector;
