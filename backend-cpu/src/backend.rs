@@ -2,6 +2,7 @@
 
 use crate::buffer::{CpuBuffer, try_copy, try_zeroed};
 use crate::kernels::query_lhb::LhbData;
+use crate::kernels::walk_lhb::Lookups;
 use crate::scratch::Scratch;
 use crate::simd::Isa;
 use crate::{CpuMesh, CpuScene, kernels, processor, simd};
@@ -15,6 +16,7 @@ use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use twinlight_core::kernels::walk_lhb::WalkLhbParams;
 use twinlight_core::kernels::{scan, sort};
 use twinlight_core::lattice::{LatticeMesh, View};
 use twinlight_core::scene::CompiledScene;
@@ -237,6 +239,27 @@ impl Backend for CpuBackend {
         let lhb = lhb_data(mesh, lhb, views)?;
         self.run("query_lhb", || {
             kernels::query_lhb::query_lhb(self.isa, lhb, queries, hits);
+            Ok(())
+        })
+    }
+
+    fn walk_lhb(
+        &self,
+        scene: &CpuScene,
+        mesh: &CpuMesh,
+        lhb: &Lhb<Self>,
+        views: &[View],
+        map: &CpuBuffer<u32>,
+        params: &WalkLhbParams,
+        film: &mut CpuBuffer<FilmTexel>,
+    ) -> Result<()> {
+        let film = film.as_mut_slice();
+        params.check(film.len(), views)?;
+        check_equal("walk_lhb size", lhb.size as usize, params.lookup.size as usize)?;
+        check_equal("walk_lhb triangles", mesh.triangles.len(), scene.data().triangles.len())?;
+        let lookups = Lookups { lhb: lhb_data(mesh, lhb, views)?, map: map.as_slice() };
+        self.run("walk_lhb", || {
+            kernels::walk_lhb::walk_lhb(self.isa, scene.data(), lookups, params, film);
             Ok(())
         })
     }

@@ -24,6 +24,7 @@ pub mod bvh8;
 mod kernels;
 mod mesh;
 mod parallel;
+mod path;
 mod processor;
 mod sampler;
 mod scene;

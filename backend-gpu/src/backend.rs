@@ -12,6 +12,7 @@ use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use twinlight_core::kernels::walk_lhb::WalkLhbParams;
 use twinlight_core::lattice::{LatticeMesh, View};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, BackendInfo, Result};
@@ -149,5 +150,19 @@ impl Backend for GpuBackend {
         hits: &mut GpuBuffer<LhbElement>,
     ) -> Result<()> {
         query_lhb::run(&self.device, mesh, lhb, views, queries, hits)
+    }
+
+    fn walk_lhb(
+        &self,
+        scene: &GpuScene,
+        mesh: &GpuMesh,
+        lhb: &Lhb<Self>,
+        views: &[View],
+        map: &GpuBuffer<u32>,
+        params: &WalkLhbParams,
+        film: &mut GpuBuffer<FilmTexel>,
+    ) -> Result<()> {
+        let _ = (scene, mesh, lhb, views, map, params, film);
+        Err(twinlight_core::Error::Unsupported("walk_lhb".into()))
     }
 }

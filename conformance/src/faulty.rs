@@ -13,6 +13,7 @@ use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use twinlight_core::kernels::walk_lhb::WalkLhbParams;
 use twinlight_core::lattice::{LatticeMesh, View};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, BackendInfo, Result};
@@ -138,5 +139,18 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         hits: &mut B::Buffer<LhbElement>,
     ) -> Result<()> {
         self.inner.query_lhb(mesh, lhb, views, queries, hits)
+    }
+
+    fn walk_lhb(
+        &self,
+        scene: &Self::Scene,
+        mesh: &Self::Mesh,
+        lhb: &Lhb<Self>,
+        views: &[View],
+        map: &B::Buffer<u32>,
+        params: &WalkLhbParams,
+        film: &mut B::Buffer<FilmTexel>,
+    ) -> Result<()> {
+        self.inner.walk_lhb(&scene.inner, mesh, lhb, views, map, params, film)
     }
 }

@@ -6,6 +6,7 @@ use crate::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use crate::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use crate::kernels::trace::{Hit, Ray};
 use crate::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use crate::kernels::walk_lhb::WalkLhbParams;
 use crate::lattice::{LatticeMesh, View};
 use crate::scene::CompiledScene;
 use bytemuck::Pod;
@@ -157,5 +158,21 @@ pub trait Backend {
         views: &[View],
         queries: &Self::Buffer<LhbQuery>,
         hits: &mut Self::Buffer<LhbElement>,
+    ) -> Result<()>;
+
+    /// Adds paths whose scattered rays are looked up to a film. `map` holds [`crate::directions::NearestMap::ray_words`].
+    /// Contract: [`crate::kernels::walk_lhb`].
+    ///
+    /// # Errors
+    /// As [`Backend::trace_paths`]; [`crate::Error::InvalidInput`] when the buffers' shapes don't fit each other.
+    fn walk_lhb(
+        &self,
+        scene: &Self::Scene,
+        mesh: &Self::Mesh,
+        lhb: &Lhb<Self>,
+        views: &[View],
+        map: &Self::Buffer<u32>,
+        params: &WalkLhbParams,
+        film: &mut Self::Buffer<FilmTexel>,
     ) -> Result<()>;
 }

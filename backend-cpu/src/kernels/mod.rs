@@ -7,3 +7,4 @@ pub(crate) mod shade_primary;
 pub(crate) mod sort;
 pub(crate) mod trace;
 pub(crate) mod trace_paths;
+pub(crate) mod walk_lhb;

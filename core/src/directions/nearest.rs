@@ -2,7 +2,7 @@
 
 use super::DirectionSet;
 use crate::error::{Error, Result};
-use crate::math::octahedral::{LAST, STEPS, nearest_direction};
+use crate::math::octahedral::{INDEX, LAST, STEPS, nearest_direction};
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
@@ -92,6 +92,18 @@ impl NearestMap {
     /// The map as backends read it.
     pub fn words(&self) -> &[u32] {
         &self.words
+    }
+
+    /// The words of a map that finds rays of layered hit buffers: twice the number of the line, plus 1 where the direction runs
+    /// against it.
+    pub fn ray_words(&self, set: &DirectionSet) -> Vec<u32> {
+        let cells = self.resolution as usize * self.resolution as usize;
+        let mut words = self.words.clone();
+        for word in words[cells..].iter_mut().skip(1).step_by(2) {
+            let on_line = set.on_lines()[(*word & INDEX) as usize];
+            *word = *word & !INDEX | on_line.line << 1 | u32::from(on_line.reversed);
+        }
+        words
     }
 
     /// Length of the longest list: the most products that one call compares.

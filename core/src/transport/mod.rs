@@ -4,6 +4,7 @@
 pub mod bsdf;
 pub mod environment;
 pub mod intersect;
+pub mod lhb;
 pub mod light;
 pub mod offset;
 pub mod surface;

@@ -1,0 +1,213 @@
+// kernel family: walk_lhb
+// contract core/src/kernels/walk_lhb.rs
+// cpu backend-cpu/src/kernels/walk_lhb.rs
+// gpu backend-gpu/src/kernels/walk_lhb.wgsl
+// oracle conformance/src/oracle/walk_lhb.rs
+//! Rust twin of `walk_lhb`: many paths side by side, a vertex at a time. Between vertices their lookups are sorted by view, so
+//! that the lists of one view are read together, while they are in cache.
+
+use crate::kernels::query_lhb::{LhbData, look_up};
+use crate::path::{Emitters, Met, Path, add_sample, start, visit};
+use crate::sampler::Sampler;
+use crate::scene::SceneData;
+use crate::simd::{Isa, Kernel, Width, dispatch};
+use crate::tracer::WideTracer;
+use glam::Vec3;
+use rayon::prelude::*;
+use twinlight_core::kernels::trace_paths::FilmTexel;
+use twinlight_core::kernels::walk_lhb::{CONE, WalkLhbParams};
+use twinlight_core::math::hash::mix_pair;
+use twinlight_core::math::octahedral::nearest_direction;
+use twinlight_core::transport::SceneView;
+use twinlight_core::transport::lhb::{lhb_hit, lhb_query, lhb_refined, ray_direction};
+use twinlight_core::transport::light::FAR;
+
+mod order;
+
+use order::Order;
+
+/// Paths side by side: hundreds for each of 160 views, and their states fit the shared cache.
+const WAVE: usize = 1 << 15;
+
+/// What lookups read.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Lookups<'a> {
+    pub(crate) lhb: LhbData<'a>,
+    /// Words of the directional map, with rays for directions.
+    pub(crate) map: &'a [u32],
+}
+
+/// A path between two vertices.
+#[derive(Debug, Clone, Copy)]
+struct Walker {
+    path: Path,
+    pixel: u32,
+    sample: u32,
+    /// Unit normal of what it leaves, on its side.
+    normal: Vec3,
+    /// Twice the triangle that it leaves, plus 1 on its front.
+    leaves: u32,
+    /// Twice the number of its view, plus 1 against it; [`TRACED`] for a ray that is traced, [`ENDED`] for a path that has ended.
+    ray: u32,
+}
+
+/// [`Walker::ray`]: from the camera, a mirror or glass.
+const TRACED: u32 = u32::MAX - 1;
+/// [`Walker::ray`]: no more.
+const ENDED: u32 = u32::MAX;
+
+/// Adds the samples of `params`, which has been checked, to `film`.
+pub(crate) fn walk_lhb(
+    isa: Isa,
+    scene: &SceneData,
+    lookups: Lookups<'_>,
+    params: &WalkLhbParams,
+    film: &mut [FilmTexel],
+) {
+    let begin = params.call.pixel_begin as usize;
+    let pixels = &mut film[begin..begin + params.call.pixel_count as usize];
+    let samples = params.call.sample_count.max(1) as usize;
+    // As many pixels as make a wave with all of their samples: their texels belong to one task.
+    let per_task = (WAVE / samples).clamp(1, pixels.len().div_ceil(rayon::current_num_threads()).max(1));
+    pixels.par_chunks_mut(per_task).enumerate().for_each(|(task, texels)| {
+        let first_pixel = (begin + task * per_task) as u32;
+        dispatch(isa, Task { scene, lookups, params, first_pixel, texels });
+    });
+}
+
+/// The pixels of one task.
+struct Task<'a> {
+    scene: &'a SceneData,
+    lookups: Lookups<'a>,
+    params: &'a WalkLhbParams,
+    first_pixel: u32,
+    texels: &'a mut [FilmTexel],
+}
+
+impl Kernel for Task<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<W: Width>(self, width: W) {
+        let tracer = WideTracer(&self.scene.bvh, width);
+        let wave = Wave { tracer, scene: self.scene.view(), lookups: self.lookups, params: self.params };
+        let call = &self.params.call;
+        let most = (WAVE / self.texels.len()).max(1) as u32;
+        let mut sample = call.sample_begin;
+        let end = call.sample_begin + call.sample_count;
+        while sample < end {
+            let count = most.min(end - sample);
+            wave.run(self.first_pixel, self.texels, sample..sample + count);
+            sample += count;
+        }
+    }
+}
+
+/// What a wave of paths reads.
+struct Wave<'a, W> {
+    tracer: WideTracer<'a, W>,
+    scene: SceneView<'a>,
+    lookups: Lookups<'a>,
+    params: &'a WalkLhbParams,
+}
+
+impl<W: Width> Wave<'_, W> {
+    #[inline(always)]
+    fn run(&self, first_pixel: u32, texels: &mut [FilmTexel], samples: std::ops::Range<u32>) {
+        let mut walkers = Vec::with_capacity(texels.len() * samples.len());
+        for sample in samples {
+            for i in 0..texels.len() as u32 {
+                walkers.push(self.begin(first_pixel + i, sample));
+            }
+        }
+        let mut order = Order::new(walkers.len(), self.lookups.lhb.views.len());
+        loop {
+            order.sort(&walkers);
+            if order.is_empty() {
+                break;
+            }
+            for &index in order.walkers() {
+                self.step(&mut walkers[index as usize]);
+            }
+        }
+        for walker in &walkers {
+            let texel = &mut texels[(walker.pixel - first_pixel) as usize];
+            add_sample(texel, walker.path.light, &self.params.call);
+        }
+    }
+
+    fn sampler(&self, pixel: u32, sample: u32) -> Sampler {
+        let call = &self.params.call;
+        Sampler { kind: call.sampler, stream: mix_pair(call.seed, pixel), sample }
+    }
+
+    // [1] sample: a point of the pixel
+    #[inline(always)]
+    fn begin(&self, pixel: u32, sample: u32) -> Walker {
+        let sampler = self.sampler(pixel, sample);
+        let path = start(self.tracer.1, &self.params.call, pixel, &sampler);
+        Walker { path, pixel, sample, normal: Vec3::ZERO, leaves: 0, ray: TRACED }
+    }
+
+    /// What the ray meets, and the next ray.
+    #[inline(always)]
+    fn step(&self, walker: &mut Walker) {
+        let sampler = self.sampler(walker.pixel, walker.sample);
+        let base = Sampler::first_pair(walker.path.vertices);
+        let numbers = sampler.vertex(self.tracer.1, base);
+        // [2] vertex: what the ray meets, and its emission
+        let met = if walker.ray == TRACED { self.traced(walker) } else { self.looked_up(walker) };
+        let (scene, call) = (&self.scene, &self.params.call);
+        let emitters = Emitters::Sampled;
+        // [3] direct light
+        // [4] scatter
+        // [5] roulette
+        let left =
+            visit(&mut walker.path, &self.tracer, scene, call, &met, &sampler, base, &numbers, emitters);
+        walker.ray = match left {
+            None => ENDED,
+            Some(left) if !left.is_opaque => TRACED,
+            Some(left) => {
+                walker.normal = left.surface.geometric_normal;
+                walker.leaves = left.slot << 1 | u32::from(left.surface.front);
+                self.nearest_ray(walker)
+            }
+        };
+    }
+
+    #[inline(always)]
+    fn traced(&self, walker: &Walker) -> Met {
+        let hit = self.tracer.closest(walker.path.origin, walker.path.direction, 0.0, FAR);
+        Met { slot: hit.slot, u: hit.u, v: hit.v, t: hit.t }
+    }
+
+    /// [6] direction: the nearest that leaves the surface
+    #[inline(always)]
+    fn nearest_ray(&self, walker: &Walker) -> u32 {
+        let (map, lookup) = (self.lookups.map, &self.params.lookup);
+        let ray = nearest_direction(map, lookup.map_resolution, walker.path.direction);
+        let leaves = walker.normal.dot(ray_direction(&self.lookups.lhb.views[(ray >> 1) as usize], ray));
+        if leaves > 0.0 {
+            return ray;
+        }
+        let lifted = walker.path.direction + walker.normal * lookup.lift;
+        nearest_direction(map, lookup.map_resolution, lifted)
+    }
+
+    /// [7] lookup: along the line through the start, then through the hit
+    #[inline(always)]
+    fn looked_up(&self, walker: &Walker) -> Met {
+        let (lookup, lhb) = (&self.params.lookup, &self.lookups.lhb);
+        let view = &lhb.views[(walker.ray >> 1) as usize];
+        let (position, direction) = (walker.path.origin, walker.path.direction);
+        let mut query = lhb_query(lookup, view, walker.ray, position, walker.normal, walker.leaves);
+        let mut found = look_up(lhb, &query);
+        let cone = lookup.flags & CONE != 0;
+        if cone {
+            query = lhb_refined(lookup, view, &query, walker.normal, direction, found);
+            found = look_up(lhb, &query);
+        }
+        let hit = lhb_hit(lookup, &self.scene, view, &query, position, direction, found, cone);
+        Met { slot: hit.slot, u: hit.u, v: hit.v, t: hit.t }
+    }
+}

@@ -1,0 +1,47 @@
+//! The order in which walkers take their next step: those that are traced, then by view.
+
+use super::{ENDED, TRACED, Walker};
+
+/// A counting sort of the walkers that go on.
+pub(super) struct Order {
+    /// One more than views, and one for the end.
+    begins: Vec<u32>,
+    walkers: Vec<u32>,
+}
+
+impl Order {
+    pub(super) fn new(walkers: usize, views: usize) -> Self {
+        Self { begins: vec![0; views + 2], walkers: vec![0; walkers] }
+    }
+
+    #[inline(always)]
+    fn bin(walker: &Walker) -> usize {
+        if walker.ray == TRACED { 0 } else { (walker.ray >> 1) as usize + 1 }
+    }
+
+    #[inline(always)]
+    pub(super) fn sort(&mut self, walkers: &[Walker]) {
+        self.begins.fill(0);
+        for walker in walkers.iter().filter(|walker| walker.ray != ENDED) {
+            self.begins[Self::bin(walker) + 1] += 1;
+        }
+        for bin in 1..self.begins.len() {
+            self.begins[bin] += self.begins[bin - 1];
+        }
+        let count = self.begins[self.begins.len() - 1] as usize;
+        self.walkers.truncate(count);
+        for (index, walker) in walkers.iter().enumerate().filter(|(_, walker)| walker.ray != ENDED) {
+            let place = &mut self.begins[Self::bin(walker)];
+            self.walkers[*place as usize] = index as u32;
+            *place += 1;
+        }
+    }
+
+    pub(super) fn walkers(&self) -> &[u32] {
+        &self.walkers
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.walkers.is_empty()
+    }
+}

@@ -1,0 +1,103 @@
+// kernel family: walk_lhb
+// contract core/src/kernels/walk_lhb.rs
+// cpu backend-cpu/src/kernels/walk_lhb.rs
+// gpu backend-gpu/src/kernels/walk_lhb.wgsl
+// oracle conformance/src/oracle/walk_lhb.rs
+//! `walk_lhb`: the paths of [`crate::kernels::trace_paths`], whose scattered rays are looked up in layered hit buffers instead
+//! of traced.
+//!
+//! *Meaning.* As `trace_paths`, with the same numbers for the same pixel and sample, but for these:
+//! 1. *Lookup.* A ray scattered by an opaque material along ω goes along d, the direction of the set that is nearest to ω; where d does
+//!    not leave the surface, the one nearest to ω + 2·sin ρ·n, ρ the set's covering radius. What it meets is
+//!    [`crate::kernels::query_lhb`]'s answer. With [`CONE`], the answer of the line that crosses the ray at that distance
+//!    ([`crate::transport::lhb`]), and the ray is intersected with the triangle so found; without, the hit is where the pixel's line
+//!    meets it, so that light bands.
+//! 2. Rays from the camera, mirrors and glass are traced: their hits are seen sharply. Shadow rays are traced.
+//! 3. *Direct light* (area formulation): a looked-up ray that meets an emissive triangle adds nothing, and sampling such a triangle has
+//!    the weight 1: a buffer's resolution says little about whether a small lamp is met. Sphere lights, which a ray
+//!    meets analytically, and the environment, which rays that leave the scene read along ω, keep the balance heuristic.
+//!
+//! *Shapes.* The [`crate::kernels::rasterize_lhb::LhbBuffers`] of the set's lines, all layers, and the views they were made with;
+//! the mesh is the scene's ([`crate::lattice::LatticeMesh::of_scene`]), so that its triangles are the scene's slots; `film` as `trace_paths`.
+//! *Units, fixed point, order.* As `trace_paths`: a sum of integers, the same for any split and any order of lookups.
+//! *Error.* Biased: visibility is that of d through a pixel's centre. It falls with more directions and pixels.
+//! *Source.* Yu, spherical layered hit buffers.
+
+use crate::accuracy::Accuracy;
+use crate::directions::MAX_RESOLUTION;
+use crate::error::{Error, Result};
+use crate::kernels::trace_paths::TracePathsParams;
+use crate::lattice::{View, check_size, subpixel_bits};
+use bytemuck::{Pod, Zeroable};
+
+/// Lookups are exact, but what is looked up, and where, comes from floats.
+pub const ACCURACY: Accuracy = Accuracy::Statistical {
+    because: "exact in strict mode on adapters that round correctly; elsewhere a path may branch otherwise",
+};
+
+/// [`WalkLhbBlock::flags`]: lines through the ray's hit instead of its start.
+pub const CONE: u32 = 1;
+
+/// What lookups need to know of a scene and its buffers.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct WalkLhbBlock {
+    /// The lattice's centre, relative to [`crate::scene::CompiledScene::origin`].
+    pub centre: [f32; 3],
+    /// Lattice steps per world unit.
+    pub steps_per_unit: f32,
+    /// World units per lattice step.
+    pub unit_per_step: f32,
+    /// P/N, P the power of two not below the size N.
+    pub row_scale: f32,
+    /// Twice the sine of the set's covering radius.
+    pub lift: f32,
+    /// Pixels per row and column of a view.
+    pub size: u32,
+    /// [`crate::lattice::subpixel_bits`] of the size.
+    pub subpixel_bits: u32,
+    /// Cells per row of the directional map.
+    pub map_resolution: u32,
+    /// [`CONE`] or 0.
+    pub flags: u32,
+    /// Unused, 0.
+    pub padding: u32,
+}
+
+/// Parameters of one call.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct WalkLhbParams {
+    /// Camera, pixels, samples, bounces, film.
+    pub call: TracePathsParams,
+    /// Lookups.
+    pub lookup: WalkLhbBlock,
+}
+
+impl WalkLhbParams {
+    /// Checks what a kernel relies on.
+    ///
+    /// # Errors
+    /// As [`TracePathsParams::check`]; [`Error::InvalidInput`] for views out of their budget or lookup parameters that contradict
+    /// each other.
+    pub fn check(&self, film_len: usize, views: &[View]) -> Result<()> {
+        self.call.check(film_len)?;
+        let lookup = &self.lookup;
+        check_size(lookup.size)?;
+        for (i, view) in views.iter().enumerate() {
+            view.check(lookup.size)
+                .map_err(|error| Error::invalid(format!("views[{i}]"), error.to_string()))?;
+        }
+        if lookup.subpixel_bits != subpixel_bits(lookup.size) {
+            let what = format!("{} sub-pixel bits for views of {}", lookup.subpixel_bits, lookup.size);
+            return Err(Error::invalid("walk_lhb", what));
+        }
+        if lookup.map_resolution % 2 != 0 || !(2..=MAX_RESOLUTION).contains(&lookup.map_resolution) {
+            return Err(Error::invalid(
+                "walk_lhb",
+                format!("map of {} cells per row", lookup.map_resolution),
+            ));
+        }
+        Ok(())
+    }
+}
