@@ -46,8 +46,8 @@ pub use twinlight_fixtures as fixtures;
 pub use twinlight_methods as methods;
 
 pub use twinlight_core::{
-    Accuracy, Backend, BackendInfo, Error, Result, accuracy, backend, bvh, error, kernels, lattice, math,
-    scene, transport,
+    Accuracy, Backend, BackendInfo, Error, Result, accuracy, backend, bvh, directions, error, kernels,
+    lattice, math, scene, transport,
 };
 
 // README's example, compiled and run with the documentation's.

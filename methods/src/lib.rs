@@ -4,3 +4,4 @@
 
 pub mod post;
 pub mod reference;
+pub mod slhb;

@@ -3,6 +3,7 @@
 use super::values::{BackendChoice, Bounces, Bytes, CameraArg, Size, seconds};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use twinlight::directions::DirectionSet;
 use twinlight::io::LoadOptions;
 use twinlight::methods::post::tonemap::Operator;
 use twinlight::methods::reference::Sampler;
@@ -109,6 +110,67 @@ impl From<SamplerName> for Sampler {
 pub enum MethodName {
     /// Unbiased path tracer, what the others are judged by
     Reference,
+    /// Spherical layered hit buffers: indirect light is looked up, not traced
+    Slhb,
+}
+
+impl MethodName {
+    /// As scene files and sidecars spell it.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Reference => "reference",
+            Self::Slhb => "slhb",
+        }
+    }
+}
+
+/// Whether hit buffers keep everything.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Layers(pub Option<u32>);
+
+impl std::str::FromStr for Layers {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "all" {
+            return Ok(Self(None));
+        }
+        match text.parse() {
+            Ok(layers) if layers > 0 => Ok(Self(Some(layers))),
+            _ => Err("neither `all` nor a number above 0".into()),
+        }
+    }
+}
+
+/// Cone approximation of lookups.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ConeName {
+    /// Lines are chosen through what the ray meets
+    Auto,
+    /// Lines go through the ray's start: shows the banding of few directions
+    Off,
+}
+
+/// Knobs of the method slhb.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Method slhb")]
+pub struct SlhbArgs {
+    /// Directions that hit buffers are built for: a number, or icosahedron:N, octahedron:N, halton:N, uv:ROWSxCOLUMNS
+    #[arg(long, value_name = "SET", default_value = "320", value_parser = direction_set)]
+    pub directions: DirectionSet,
+    /// Pixels per row and column of a hit buffer, 1 to 1024
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub lhb_size: u32,
+    /// Surfaces that a pixel of a hit buffer keeps: all, or the nearest N
+    #[arg(long, value_name = "N", default_value = "all")]
+    pub layers: Layers,
+    /// Whether lookups follow the ray or its nearest direction alone
+    #[arg(long, value_name = "HOW", default_value = "auto")]
+    pub cone: ConeName,
+}
+
+fn direction_set(text: &str) -> Result<DirectionSet, String> {
+    text.parse().map_err(|e: twinlight::Error| e.to_string())
 }
 
 /// How progress is shown on stderr.
@@ -220,6 +282,9 @@ pub struct RenderArgs {
         help_heading = "Device"
     )]
     pub progress: ProgressMode,
+
+    #[command(flatten)]
+    pub slhb: SlhbArgs,
 
     #[command(flatten)]
     pub load: LoadArgs,

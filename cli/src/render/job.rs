@@ -1,17 +1,16 @@
 //! What to render: flags before the scene's own settings before defaults.
 
-use crate::args::{Bounces, RenderArgs, Size};
+use crate::args::{Bounces, ConeName, MethodName, RenderArgs, Size};
 use crate::exit::{Failure, Stage};
 use crate::source::Prepared;
+use clap::ValueEnum;
 use std::time::Duration;
 use twinlight::Error;
 use twinlight::kernels::shade_primary::GBufferTexel;
 use twinlight::kernels::trace_paths::FilmTexel;
 use twinlight::methods::reference::Settings;
+use twinlight::methods::slhb::LookupSettings;
 use twinlight::scene::Camera;
-
-/// The one method there is.
-pub const METHOD: &str = "reference";
 
 /// Samples per pixel when only the time is limited: never the first to end.
 const UNLIMITED_SAMPLES: u32 = 1 << 24;
@@ -24,6 +23,10 @@ const BYTES_PER_PIXEL: u64 =
 /// A render that was checked against the limits.
 #[derive(Debug)]
 pub struct Job {
+    /// How.
+    pub method: MethodName,
+    /// For slhb.
+    pub lookups: LookupSettings,
     /// For the method.
     pub settings: Settings,
     /// Time limit.
@@ -41,9 +44,13 @@ impl Job {
     pub fn new(args: &RenderArgs, prepared: &Prepared) -> Result<Self, Failure> {
         let own = &prepared.settings;
         let input = |place: &str, what: String| Failure::Library(Stage::Input, Error::invalid(place, what));
-        if let Some(method) = own.method.as_deref().filter(|m| *m != METHOD && args.method.is_none()) {
-            return Err(input("render.method", format!("no method is called '{method}'; there is {METHOD}")));
-        }
+        let method = match (args.method, own.method.as_deref()) {
+            (Some(method), _) => method,
+            (None, None) => MethodName::Reference,
+            (None, Some(name)) => MethodName::from_str(name, false).map_err(|_| {
+                input("render.method", format!("no method is called '{name}'; there are reference and slhb"))
+            })?,
+        };
         let size = args.size.or(own.size.map(|[w, h]| Size(w, h))).unwrap_or(Size(512, 512));
         let time = args.time.map(Duration::from_secs_f64);
         let samples = match (args.spp, time) {
@@ -72,6 +79,13 @@ impl Job {
         let camera = Camera::of_scene(&prepared.scene);
         let camera =
             camera.ok_or_else(|| input("camera", "the scene has none and no bounds to frame".into()))?;
-        Ok(Self { settings, time, camera })
+        let knobs = &args.slhb;
+        let lookups = LookupSettings {
+            directions: knobs.directions.clone(),
+            size: knobs.lhb_size,
+            layers: knobs.layers.0,
+            cone: knobs.cone == ConeName::Auto,
+        };
+        Ok(Self { method, lookups, settings, time, camera })
     }
 }

@@ -4,6 +4,7 @@
 use super::job::Job;
 use std::time::{Duration, Instant};
 use twinlight::methods::reference::{self, Control, Film, Progress, Settings, StopReason};
+use twinlight::methods::slhb::{self, Buffers};
 use twinlight::scene::CompiledScene;
 use twinlight::{Backend, Error, Result};
 
@@ -69,6 +70,7 @@ pub fn take<B: Backend>(
     backend: &B,
     resident: &B::Scene,
     scene: &CompiledScene,
+    buffers: Option<&Buffers<B>>,
     job: &Job,
     interrupted: impl Fn() -> Option<i32>,
     mut observe: impl FnMut(Progress),
@@ -83,12 +85,17 @@ pub fn take<B: Backend>(
         // A picture with holes is no picture: time counts once every pixel has a sample.
         let may_time_out = sum.is_some();
         let batch_start = Instant::now();
-        let rendered = reference::render(backend, resident, scene, &job.camera, &part, |progress| {
+        let observe = |progress: Progress| {
             fraction = fraction.max(share(job, taken, &progress, start.elapsed()));
             observe(Progress { fraction, samples: taken + progress.samples, elapsed: start.elapsed() });
             let stop = interrupted().is_some() || (may_time_out && out_of_time());
             if stop { Control::Stop } else { Control::Continue }
-        });
+        };
+        let camera = &job.camera;
+        let rendered = match buffers {
+            None => reference::render(backend, resident, scene, camera, &part, observe),
+            Some(buffers) => slhb::render(backend, resident, scene, buffers, camera, &part, observe),
+        };
         let rendered = match rendered {
             Ok(rendered) => rendered,
             Err(lost @ Error::DeviceLost { .. }) if sum.is_some() => break (Stop::DeviceLost, Some(lost)),
@@ -146,7 +153,13 @@ mod tests {
         let scene = twinlight::fixtures::scenes::builtin("cornell").unwrap();
         let compiled = compile(&scene, &Limits::default()).unwrap();
         let settings = Settings { width: 16, height: 16, samples: 64, ..Settings::default() };
-        let job = Job { settings, time: None, camera: Camera::of_scene(&scene).unwrap() };
+        let job = Job {
+            method: crate::args::MethodName::Reference,
+            lookups: slhb::LookupSettings::default(),
+            settings,
+            time: None,
+            camera: Camera::of_scene(&scene).unwrap(),
+        };
         // Batches have 1, 2, 4 … samples.
         for (lost_at, saved) in [(1, 0), (3, 1), (4, 3)] {
             let Some(gpu) = open() else { return };
@@ -156,7 +169,7 @@ mod tests {
                     gpu.device().destroy();
                 }
             };
-            let taken = take(&gpu, &resident, &compiled, &job, || None, destroy);
+            let taken = take(&gpu, &resident, &compiled, None, &job, || None, destroy);
             if saved == 0 {
                 assert!(matches!(taken, Err(Error::DeviceLost { .. })));
                 continue;

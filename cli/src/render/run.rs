@@ -3,14 +3,27 @@
 use super::job::Job;
 use super::passes::{self, Stop, Taken};
 use super::progress::Display;
-use crate::args::RenderArgs;
+use crate::args::{MethodName, RenderArgs};
 use crate::device::Device;
 use crate::exit::{Failure, Stage};
 use crate::interrupt::Interrupt;
 use crate::source::Prepared;
 use std::time::{Duration, Instant};
 use twinlight::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use twinlight::methods::slhb;
 use twinlight::{Backend, BackendInfo, Error};
+
+/// Hit buffers, for the sidecar.
+pub struct Built {
+    /// To rasterize.
+    pub time: Duration,
+    /// Lines of the set of directions.
+    pub views: usize,
+    /// Of all lists.
+    pub elements: usize,
+    /// On the device.
+    pub bytes: u64,
+}
 
 /// What a backend made of a job.
 pub struct Done {
@@ -18,6 +31,8 @@ pub struct Done {
     pub taken: Taken,
     /// What the camera sees, where the backend has the kernel.
     pub gbuffer: Option<Vec<GBufferTexel>>,
+    /// The method's hit buffers, where it has any.
+    pub lookups: Option<Built>,
     /// What ran it.
     pub info: BackendInfo,
     /// Time to make the scene resident.
@@ -73,9 +88,22 @@ impl Session<'_> {
         let resident = backend.upload_scene(compiled)?;
         let upload_time = start.elapsed();
 
+        let buffers = match self.job.method {
+            MethodName::Reference => None,
+            MethodName::Slhb => Some(slhb::build(backend, compiled, &self.job.lookups)?),
+        };
+        let lookups = buffers.as_ref().map(|buffers| Built {
+            time: buffers.build_time,
+            views: buffers.views.len(),
+            elements: buffers.elements(backend),
+            bytes: buffers.bytes(backend),
+        });
+
         let mut display = Display::new(self.args.progress);
         let caught = || self.interrupt.caught();
-        let taken = passes::take(backend, &resident, compiled, self.job, caught, |p| display.update(&p));
+        let taken = passes::take(backend, &resident, compiled, buffers.as_ref(), self.job, caught, |p| {
+            display.update(&p)
+        });
         display.finish();
         let taken = taken?;
         if let Some(lost) = &taken.lost {
@@ -101,7 +129,7 @@ impl Session<'_> {
             Some(Err(error)) => return Err(error),
         };
         let gbuffer_time = start.elapsed();
-        Ok(Done { taken, gbuffer, info: backend.info(), upload_time, gbuffer_time })
+        Ok(Done { taken, gbuffer, lookups, info: backend.info(), upload_time, gbuffer_time })
     }
 
     fn gbuffer<B: Backend>(&self, backend: &B, resident: &B::Scene) -> twinlight::Result<Vec<GBufferTexel>> {

@@ -1,6 +1,6 @@
 //! How a picture was made, for machines: the JSON beside it and the attributes in the EXR header.
 
-use super::job::{Job, METHOD};
+use super::job::Job;
 use super::output::Outputs;
 use super::run::Done;
 use crate::args::RenderArgs;
@@ -33,7 +33,7 @@ pub fn attributes(args: &RenderArgs, job: &Job, done: &Done) -> Vec<(&'static st
     vec![
         ("version", env!("CARGO_PKG_VERSION").into()),
         ("scene", source::stem(&args.scene)),
-        ("method", METHOD.into()),
+        ("method", job.method.key().into()),
         ("backend", done.info.kind.into()),
         ("adapter", done.info.device.clone()),
         ("mode", mode.into()),
@@ -59,12 +59,19 @@ pub fn json(
     let (least, most) = done.taken.samples();
     let seconds = |d: Duration| (d.as_secs_f64() * 1e6).round_ties_even() / 1e6;
     let pixels = u64::from(settings.width) * u64::from(settings.height);
+    let kernel = if done.lookups.is_some() { "walk_lhb" } else { "trace_paths" };
     let value = json!({
         "twinlight": env!("CARGO_PKG_VERSION"),
         "scene": { "source": args.scene, "triangles": prepared.scene.triangle_count() },
         "files": outputs.pictures().map(|p| p.display().to_string()).collect::<Vec<_>>(),
         "settings": {
-            "method": METHOD,
+            "method": job.method.key(),
+            "slhb": done.lookups.as_ref().map(|_| json!({
+                "directions": job.lookups.directions.to_string(),
+                "size": job.lookups.size,
+                "layers": job.lookups.layers,
+                "cone": job.lookups.cone,
+            })),
             "size": [settings.width, settings.height],
             "spp": args.spp.or(job.time.is_none().then_some(settings.samples)),
             "time_s": job.time.map(seconds),
@@ -86,6 +93,8 @@ pub fn json(
         },
         "result": {
             "stop": done.taken.stop.name(),
+            "lhb_views": done.lookups.as_ref().map(|built| built.views),
+            "lhb_elements": done.lookups.as_ref().map(|built| built.elements),
             "samples": { "least": least, "most": most },
             "paths_per_second": done.taken.paths_per_second(),
         },
@@ -93,13 +102,15 @@ pub fn json(
             "load": seconds(prepared.load_time),
             "compile": seconds(prepared.compile_time),
             "upload": seconds(done.upload_time),
-            "trace_paths": seconds(done.taken.elapsed),
+            "rasterize_lhb": done.lookups.as_ref().map(|built| seconds(built.time)),
+            (kernel): seconds(done.taken.elapsed),
             "shade_primary": done.gbuffer.is_some().then(|| seconds(done.gbuffer_time)),
             "write": seconds(times.write),
             "total": seconds(times.total),
         },
         "bytes": {
             "scene": source::compiled_bytes(&prepared.compiled),
+            "lhb": done.lookups.as_ref().map(|built| built.bytes),
             "film": pixels * size_of::<FilmTexel>() as u64,
             "peak_resident": peak_resident(),
         },

@@ -93,6 +93,19 @@ pub fn render<B: Backend>(
     scene: &CompiledScene,
     camera: &Camera,
     settings: &Settings,
+    observe: impl FnMut(Progress) -> Control,
+) -> Result<Rendered> {
+    let kernel = |params: &TracePathsParams, film: &mut _| backend.trace_paths(resident, params, film);
+    accumulate(backend, scene, camera, settings, kernel, observe)
+}
+
+/// Runs a kernel that adds samples to a film, in passes.
+pub(crate) fn accumulate<B: Backend>(
+    backend: &B,
+    scene: &CompiledScene,
+    camera: &Camera,
+    settings: &Settings,
+    kernel: impl Fn(&TracePathsParams, &mut B::Buffer<FilmTexel>) -> Result<()>,
     mut observe: impl FnMut(Progress) -> Control,
 ) -> Result<Rendered> {
     let mut params = settings.params(camera, scene)?;
@@ -108,7 +121,7 @@ pub fn render<B: Backend>(
         params.sample_begin = settings.first_sample + pass.sample_begin;
         params.sample_count = pass.sample_count;
         let before = Instant::now();
-        backend.trace_paths(resident, &params, &mut sums)?;
+        kernel(&params, &mut sums)?;
         schedule.took(&pass, before.elapsed());
         let elapsed = start.elapsed();
         let progress = Progress { fraction: schedule.fraction(), samples: schedule.whole_samples(), elapsed };
