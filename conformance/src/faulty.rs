@@ -1,5 +1,6 @@
 //! A backend with one planted bug: everything goes through to a sound backend, and one result comes back wrong.
 
+mod rasterize_lhb;
 mod scan;
 mod shade_primary;
 mod sort;
@@ -30,6 +31,13 @@ pub struct FaultyScene<S> {
     host: CompiledScene,
 }
 
+/// A mesh on the sound backend, and on the host.
+#[derive(Debug)]
+pub struct FaultyMesh<M> {
+    inner: M,
+    host: LatticeMesh,
+}
+
 impl<'a, B: Backend> Faulty<'a, B> {
     /// Plants `fault` in `inner`.
     pub fn new(inner: &'a B, fault: Fault) -> Self {
@@ -40,7 +48,7 @@ impl<'a, B: Backend> Faulty<'a, B> {
 impl<B: Backend> Backend for Faulty<'_, B> {
     type Buffer<T: Pod + Send + Sync> = B::Buffer<T>;
     type Scene = FaultyScene<B::Scene>;
-    type Mesh = B::Mesh;
+    type Mesh = FaultyMesh<B::Mesh>;
 
     fn info(&self) -> BackendInfo {
         self.inner.info()
@@ -68,7 +76,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
     }
 
     fn upload_mesh(&self, mesh: &LatticeMesh) -> Result<Self::Mesh> {
-        self.inner.upload_mesh(mesh)
+        Ok(FaultyMesh { inner: self.inner.upload_mesh(mesh)?, host: mesh.clone() })
     }
 
     fn scan(&self, input: &B::Buffer<u32>, output: &mut B::Buffer<u32>) -> Result<u32> {
@@ -126,7 +134,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &RasterizeLhbParams,
     ) -> Result<Lhb<Self>> {
         let Lhb { size, view_count, offsets, elements, left_out } =
-            self.inner.rasterize_lhb(mesh, views, params)?;
+            rasterize_lhb::rasterize_lhb(self.inner, self.fault, mesh, views, params)?;
         Ok(Lhb { size, view_count, offsets, elements, left_out })
     }
 }
