@@ -7,9 +7,11 @@ use crate::kernels::trace_paths::{params, traced};
 use crate::scenes::{Rays, compiled};
 use crate::trial::{Check, Context, Failure, Options, ensure};
 use twinlight_core::Backend;
+use twinlight_core::kernels::rasterize_lhb::{LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::Hit;
 use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsParams};
+use twinlight_core::lattice::{Lattice, LatticeMesh, View};
 use twinlight_core::scene::{Camera, Scene};
 use twinlight_fixtures::scenes::builtin;
 use twinlight_methods::post::image::Image;
@@ -20,7 +22,7 @@ pub type CrossCheck<A, B> = fn(&A, &B) -> Check;
 
 /// Every comparison, by name. The first backend is the yardstick in messages.
 pub fn checks<A: Backend, B: Backend>() -> Vec<(&'static str, CrossCheck<A, B>)> {
-    vec![("trace", hits), ("shade_primary", gbuffers), ("trace_paths", films)]
+    vec![("rasterize_lhb", lists), ("trace", hits), ("shade_primary", gbuffers), ("trace_paths", films)]
 }
 
 /// The verdict of one comparison.
@@ -50,6 +52,27 @@ fn both_strict<A: Backend, B: Backend>(a: &A, b: &B) -> bool {
 
 fn context<'a, B>(backend: &'a B, options: &'a Options, name: &'a str) -> Context<'a, B> {
     Context { backend, options, name }
+}
+
+/// Layered hit buffers from four directions, in 48² pixels: integers, so the same bits in every mode.
+fn lists<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    fn run<B: Backend>(backend: &B, scene: &Scene) -> Result<(Vec<u32>, Vec<LhbElement>), Failure> {
+        let compiled = compiled(scene);
+        let mesh = LatticeMesh::of_scene(&Lattice::of_scene(&compiled)?, &compiled)?;
+        let directions = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.3, -0.8, 0.5], [-0.6, 0.2, 0.7]];
+        let views: Vec<View> =
+            directions.map(|d| View::along(d.into(), 48)).into_iter().collect::<Result<_, _>>()?;
+        let lhb =
+            backend.rasterize_lhb(&backend.upload_mesh(&mesh)?, &views, &RasterizeLhbParams::new(48))?;
+        Ok((backend.download(&lhb.offsets)?, backend.download(&lhb.elements)?))
+    }
+    each_scene(|scene| {
+        let (want, got) = (run(a, scene)?, run(b, scene)?);
+        let options = Options::default();
+        let cx = context(b, &options, "cross.rasterize_lhb");
+        exact(&cx, "offsets", &got.0, &want.0, Shape::Image { width: 48 })?;
+        exact(&cx, "elements", &got.1, &want.1, Shape::Line)
+    })
 }
 
 /// Closest hits. In portable mode both are held to the oracle's intervals by the suite; here at most one ray in a

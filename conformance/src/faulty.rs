@@ -1,5 +1,6 @@
 //! A backend with one planted bug: everything goes through to a sound backend, and one result comes back wrong.
 
+mod rasterize_lhb;
 mod scan;
 mod shade_primary;
 mod sort;
@@ -32,6 +33,13 @@ pub struct FaultyScene<S> {
     host: CompiledScene,
 }
 
+/// A mesh on the sound backend, and on the host.
+#[derive(Debug)]
+pub struct FaultyMesh<M> {
+    inner: M,
+    host: LatticeMesh,
+}
+
 impl<'a, B: Backend> Faulty<'a, B> {
     /// Plants `fault` in `inner`.
     pub fn new(inner: &'a B, fault: Fault) -> Self {
@@ -42,7 +50,7 @@ impl<'a, B: Backend> Faulty<'a, B> {
 impl<B: Backend> Backend for Faulty<'_, B> {
     type Buffer<T: Pod + Send + Sync> = B::Buffer<T>;
     type Scene = FaultyScene<B::Scene>;
-    type Mesh = B::Mesh;
+    type Mesh = FaultyMesh<B::Mesh>;
 
     fn info(&self) -> BackendInfo {
         self.inner.info()
@@ -70,7 +78,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
     }
 
     fn upload_mesh(&self, mesh: &LatticeMesh) -> Result<Self::Mesh> {
-        self.inner.upload_mesh(mesh)
+        Ok(FaultyMesh { inner: self.inner.upload_mesh(mesh)?, host: mesh.clone() })
     }
 
     fn scan(&self, input: &B::Buffer<u32>, output: &mut B::Buffer<u32>) -> Result<u32> {
@@ -127,7 +135,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         views: &[View],
         params: &RasterizeLhbParams,
     ) -> Result<Lhb<Self>> {
-        self.inner.rasterize_lhb(mesh, views, params)
+        rasterize_lhb::rasterize_lhb(self.inner, self.fault, mesh, views, params)
     }
 
     fn query_lhb(
@@ -138,7 +146,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         queries: &B::Buffer<LhbQuery>,
         hits: &mut B::Buffer<LhbElement>,
     ) -> Result<()> {
-        self.inner.query_lhb(mesh, lhb, views, queries, hits)
+        self.inner.query_lhb(&mesh.inner, lhb, views, queries, hits)
     }
 
     fn walk_lhb(
@@ -151,6 +159,6 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &WalkLhbParams,
         film: &mut B::Buffer<FilmTexel>,
     ) -> Result<()> {
-        self.inner.walk_lhb(&scene.inner, mesh, lhb, views, map, params, film)
+        self.inner.walk_lhb(&scene.inner, &mesh.inner, lhb, views, map, params, film)
     }
 }

@@ -1,6 +1,7 @@
 //! How elements split into named fields, so that evidence can say which one differs.
 
 use bytemuck::Pod;
+use twinlight_core::kernels::rasterize_lhb::LhbElement;
 use twinlight_core::kernels::shade_primary::GBufferTexel;
 use twinlight_core::kernels::trace::Hit;
 use twinlight_core::kernels::trace_paths::FilmTexel;
@@ -83,6 +84,11 @@ impl Record for Hit {
         field("u", Kind::Float, 1),
         field("v", Kind::Float, 1),
     ];
+}
+
+impl Record for LhbElement {
+    const FIELDS: &'static [Field] =
+        &[field("surface", Kind::Unsigned, 1), field("depth", Kind::Unsigned, 1)];
 }
 
 impl Record for GBufferTexel {

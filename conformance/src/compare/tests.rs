@@ -1,5 +1,6 @@
 use super::*;
 use crate::trial::Options;
+use twinlight_core::kernels::rasterize_lhb::LhbElement;
 use twinlight_core::kernels::shade_primary::GBufferTexel;
 use twinlight_core::kernels::trace::Hit;
 use twinlight_core::kernels::trace_paths::FilmTexel;
@@ -23,9 +24,14 @@ fn fields_cover_their_records() {
             size_of::<T>(),
         )
     }
-    for (fields, record) in
-        [bytes::<u32>(), bytes::<u64>(), bytes::<Hit>(), bytes::<GBufferTexel>(), bytes::<FilmTexel>()]
-    {
+    for (fields, record) in [
+        bytes::<u32>(),
+        bytes::<u64>(),
+        bytes::<Hit>(),
+        bytes::<GBufferTexel>(),
+        bytes::<FilmTexel>(),
+        bytes::<LhbElement>(),
+    ] {
         assert_eq!(fields, record);
     }
 }

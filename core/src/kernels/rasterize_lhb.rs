@@ -49,6 +49,7 @@ use crate::error::{Error, Result};
 use crate::kernels::scan;
 use crate::lattice::View;
 use bytemuck::{Pod, Zeroable};
+use std::fmt;
 
 /// Every output is decided by integers.
 pub const ACCURACY: Accuracy = Accuracy::Exact {
@@ -111,7 +112,7 @@ impl LhbElement {
 }
 
 /// Layered hit buffers on a device: `O` holds `u32`, `E` holds [`LhbElement`].
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct LhbBuffers<O, E> {
     /// Pixels per row and column of every view.
     pub size: u32,
@@ -123,6 +124,12 @@ pub struct LhbBuffers<O, E> {
     pub elements: E,
     /// How many elements the cap left out, per pixel; empty without a cap.
     pub left_out: O,
+}
+
+impl<O, E> fmt::Debug for LhbBuffers<O, E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "LhbBuffers({} views of {}x{})", self.view_count, self.size, self.size)
+    }
 }
 
 /// [`LhbBuffers`] in a backend's buffers.
