@@ -18,7 +18,7 @@ use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
 use twinlight_core::kernels::walk_lhb::WalkLhbParams;
 use twinlight_core::kernels::{scan, sort};
-use twinlight_core::lattice::{LatticeMesh, View};
+use twinlight_core::lattice::{LatticeMesh, View, subpixel_bits};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, BackendInfo, Error, Result};
 
@@ -272,6 +272,7 @@ fn lhb_data<'a>(mesh: &'a CpuMesh, lhb: &'a Lhb<CpuBackend>, views: &'a [View]) 
     check_equal("query_lhb offsets", lhb.offsets.as_slice().len(), pixels + 1)?;
     Ok(LhbData {
         size: lhb.size,
+        bits: subpixel_bits(lhb.size),
         views,
         offsets: lhb.offsets.as_slice(),
         elements: lhb.elements.as_slice(),

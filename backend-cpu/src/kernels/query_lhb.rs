@@ -7,20 +7,25 @@
 //! core's cache.
 
 use crate::parallel::fill_chunks;
-use crate::simd::{Isa, Kernel, Width};
+use crate::simd::{Isa, Kernel, Width, prefetch};
 use twinlight_core::kernels::query_lhb::{CLEARANCE, LhbQuery, NO_ELEMENT};
 use twinlight_core::kernels::rasterize_lhb::LhbElement;
-use twinlight_core::lattice::{DEPTH_ORIGIN, LatticePlane, View, subpixel_bits};
+use twinlight_core::lattice::{DEPTH_ORIGIN, LatticePlane, View};
 
 /// Layered hit buffers and what queries need beside them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LhbData<'a> {
     pub(crate) size: u32,
+    /// Sub-pixel bits.
+    pub(crate) bits: u32,
     pub(crate) views: &'a [View],
     pub(crate) offsets: &'a [u32],
     pub(crate) elements: &'a [LhbElement],
     pub(crate) planes: &'a [LatticePlane],
 }
+
+/// Queries that are looked up side by side: more than memory serves at once.
+pub(crate) const BATCH: usize = 32;
 
 const NOTHING: LhbElement = LhbElement { surface: NO_ELEMENT, depth: 0 };
 
@@ -39,34 +44,70 @@ impl Kernel for Chunk<'_> {
 
     #[inline(always)]
     fn run<W: Width>(self, _: W) {
-        for (query, hit) in self.queries.iter().zip(self.hits) {
-            *hit = look_up(&self.lhb, query);
+        for (queries, hits) in self.queries.chunks(BATCH).zip(self.hits.chunks_mut(BATCH)) {
+            look_up(&self.lhb, queries, hits);
         }
     }
 }
 
-/// The element that a query meets.
+/// Where a query's list is.
+#[derive(Debug, Clone, Copy, Default)]
+struct Place {
+    /// Number of the list, and then where it begins and ends.
+    list: u32,
+    begin: u32,
+    end: u32,
+    /// The position's depth.
+    z: i32,
+}
+
+/// The elements that at most [`BATCH`] queries meet, in steps for all of them: each waits for memory, and waits of independent
+/// reads overlap.
 #[inline(always)]
-pub(crate) fn look_up(lhb: &LhbData<'_>, query: &LhbQuery) -> LhbElement {
-    let (number, reversed) = (query.ray >> 1, query.ray & 1);
-    let Some(view) = lhb.views.get(number as usize) else { return NOTHING };
+pub(crate) fn look_up(lhb: &LhbData<'_>, queries: &[LhbQuery], hits: &mut [LhbElement]) {
+    let mut places = [Place::default(); BATCH];
     // [1] project
-    let bits = subpixel_bits(lhb.size);
+    for (query, place) in queries.iter().zip(&mut places) {
+        *place = project(lhb, query);
+        if let Some(offset) = lhb.offsets.get(place.list as usize) {
+            prefetch(offset);
+        }
+    }
+    for place in places.iter_mut().take(queries.len()) {
+        let list = place.list as usize;
+        if let Some(&[begin, end]) = lhb.offsets.get(list..).and_then(|rest| rest.first_chunk()) {
+            (place.begin, place.end) = (begin, end);
+            if let Some(element) = lhb.elements.get(begin as usize) {
+                prefetch(element);
+            }
+        }
+    }
+    // [2] walk the list
+    for ((query, place), hit) in queries.iter().zip(&places).zip(hits) {
+        let list = lhb.elements.get(place.begin as usize..place.end as usize).unwrap_or_default();
+        *hit = if query.ray & 1 == 0 {
+            ahead(lhb, query, list.iter(), place.z, 0)
+        } else {
+            ahead(lhb, query, list.iter().rev(), place.z, 1)
+        };
+    }
+}
+
+/// The number of a query's list, beyond all for a view that there isn't.
+#[inline(always)]
+fn project(lhb: &LhbData<'_>, query: &LhbQuery) -> Place {
+    let number = query.ray >> 1;
+    let Some(view) = lhb.views.get(number as usize) else {
+        return Place { list: u32::MAX, ..Place::default() };
+    };
+    let bits = lhb.bits;
     let middle = ((lhb.size << (bits + 14)) + (1 << 14)) as i32;
     let edge = (lhb.size << bits) as i32 - 1;
     let x = ((dot(view.right, query.position).wrapping_add(middle)) >> 15).wrapping_add(query.offset[0]);
     let y = ((dot(view.down, query.position).wrapping_add(middle)) >> 15).wrapping_add(query.offset[1]);
     let z = dot(view.forward, query.position).wrapping_add(DEPTH_ORIGIN);
     let (column, row) = (x.clamp(0, edge) as u32 >> bits, y.clamp(0, edge) as u32 >> bits);
-    // [2] walk the list
-    let pixel = (number * lhb.size + row) * lhb.size + column;
-    let (begin, end) = (lhb.offsets[pixel as usize], lhb.offsets[pixel as usize + 1]);
-    let list = &lhb.elements[begin as usize..end as usize];
-    if reversed == 0 {
-        ahead(lhb, query, list.iter(), z, 0)
-    } else {
-        ahead(lhb, query, list.iter().rev(), z, 1)
-    }
+    Place { list: (number * lhb.size + row) * lhb.size + column, begin: 0, end: 0, z }
 }
 
 /// The first element of `list` that lies ahead.

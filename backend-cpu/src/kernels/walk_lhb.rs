@@ -6,18 +6,22 @@
 //! Rust twin of `walk_lhb`: many paths side by side, a vertex at a time. Between vertices their lookups are sorted by view, so
 //! that the lists of one view are read together, while they are in cache.
 
-use crate::kernels::query_lhb::{LhbData, look_up};
+use crate::kernels::query_lhb::{BATCH, LhbData, look_up};
 use crate::path::{Emitters, Met, Path, add_sample, start, visit};
 use crate::sampler::Sampler;
 use crate::scene::SceneData;
 use crate::simd::{Isa, Kernel, Width, dispatch};
 use crate::tracer::WideTracer;
+use bytemuck::Zeroable;
 use glam::Vec3;
 use rayon::prelude::*;
+use twinlight_core::kernels::query_lhb::LhbQuery;
+use twinlight_core::kernels::rasterize_lhb::LhbElement;
 use twinlight_core::kernels::trace_paths::FilmTexel;
 use twinlight_core::kernels::walk_lhb::{CONE, WalkLhbParams};
 use twinlight_core::math::hash::mix_pair;
 use twinlight_core::math::octahedral::nearest_direction;
+use twinlight_core::scene::NONE;
 use twinlight_core::transport::SceneView;
 use twinlight_core::transport::lhb::{lhb_hit, lhb_query, lhb_refined, ray_direction};
 use twinlight_core::transport::light::FAR;
@@ -121,13 +125,21 @@ impl<W: Width> Wave<'_, W> {
             }
         }
         let mut order = Order::new(walkers.len(), self.lookups.lhb.views.len());
+        let mut met = vec![Met { slot: NONE, u: 0.0, v: 0.0, t: FAR }; walkers.len()];
         loop {
             order.sort(&walkers);
             if order.is_empty() {
                 break;
             }
-            for &index in order.walkers() {
-                self.step(&mut walkers[index as usize]);
+            for &index in order.traced() {
+                met[index as usize] = self.traced(&walkers[index as usize]);
+            }
+            for batch in order.looked_up().chunks(BATCH) {
+                self.look_up(&walkers, batch, &mut met);
+            }
+            // In the walkers' order, so that rays to lights start from neighbouring pixels.
+            for (walker, met) in walkers.iter_mut().zip(&met).filter(|(walker, _)| walker.ray != ENDED) {
+                self.step(walker, met);
             }
         }
         for walker in &walkers {
@@ -149,21 +161,19 @@ impl<W: Width> Wave<'_, W> {
         Walker { path, pixel, sample, normal: Vec3::ZERO, leaves: 0, ray: TRACED }
     }
 
-    /// What the ray meets, and the next ray.
+    /// What shines on what the ray meets, and the next ray.
     #[inline(always)]
-    fn step(&self, walker: &mut Walker) {
+    fn step(&self, walker: &mut Walker, met: &Met) {
         let sampler = self.sampler(walker.pixel, walker.sample);
         let base = Sampler::first_pair(walker.path.vertices);
         let numbers = sampler.vertex(self.tracer.1, base);
-        // [2] vertex: what the ray meets, and its emission
-        let met = if walker.ray == TRACED { self.traced(walker) } else { self.looked_up(walker) };
         let (scene, call) = (&self.scene, &self.params.call);
         let emitters = Emitters::Sampled;
         // [3] direct light
         // [4] scatter
         // [5] roulette
         let left =
-            visit(&mut walker.path, &self.tracer, scene, call, &met, &sampler, base, &numbers, emitters);
+            visit(&mut walker.path, &self.tracer, scene, call, met, &sampler, base, &numbers, emitters);
         walker.ray = match left {
             None => ENDED,
             Some(left) if !left.is_opaque => TRACED,
@@ -175,6 +185,7 @@ impl<W: Width> Wave<'_, W> {
         };
     }
 
+    // [2] vertex: what the ray meets, and its emission
     #[inline(always)]
     fn traced(&self, walker: &Walker) -> Met {
         let hit = self.tracer.closest(walker.path.origin, walker.path.direction, 0.0, FAR);
@@ -196,18 +207,30 @@ impl<W: Width> Wave<'_, W> {
 
     /// [7] lookup: along the line through the start, then through the hit
     #[inline(always)]
-    fn looked_up(&self, walker: &Walker) -> Met {
+    fn look_up(&self, walkers: &[Walker], batch: &[u32], met: &mut [Met]) {
         let (lookup, lhb) = (&self.params.lookup, &self.lookups.lhb);
-        let view = &lhb.views[(walker.ray >> 1) as usize];
-        let (position, direction) = (walker.path.origin, walker.path.direction);
-        let mut query = lhb_query(lookup, view, walker.ray, position, walker.normal, walker.leaves);
-        let mut found = look_up(lhb, &query);
         let cone = lookup.flags & CONE != 0;
-        if cone {
-            query = lhb_refined(lookup, view, &query, walker.normal, direction, found);
-            found = look_up(lhb, &query);
+        let mut queries = [LhbQuery::zeroed(); BATCH];
+        let mut found = [LhbElement { surface: 0, depth: 0 }; BATCH];
+        for (query, &index) in queries.iter_mut().zip(batch) {
+            let walker = &walkers[index as usize];
+            let view = &lhb.views[(walker.ray >> 1) as usize];
+            *query = lhb_query(lookup, view, walker.ray, walker.path.origin, walker.normal, walker.leaves);
         }
-        let hit = lhb_hit(lookup, &self.scene, view, &query, position, direction, found, cone);
-        Met { slot: hit.slot, u: hit.u, v: hit.v, t: hit.t }
+        look_up(lhb, &queries[..batch.len()], &mut found);
+        if cone {
+            for ((query, found), &index) in queries.iter_mut().zip(&found).zip(batch) {
+                let walker = &walkers[index as usize];
+                let view = &lhb.views[(walker.ray >> 1) as usize];
+                *query = lhb_refined(lookup, view, query, walker.normal, walker.path.direction, *found);
+            }
+            look_up(lhb, &queries[..batch.len()], &mut found);
+        }
+        for ((query, found), &index) in queries.iter().zip(&found).zip(batch) {
+            let Walker { path, ray, .. } = &walkers[index as usize];
+            let view = &lhb.views[(ray >> 1) as usize];
+            let hit = lhb_hit(lookup, &self.scene, view, query, path.origin, path.direction, *found, cone);
+            met[index as usize] = Met { slot: hit.slot, u: hit.u, v: hit.v, t: hit.t };
+        }
     }
 }

@@ -26,20 +26,24 @@
 //!    z(i, j) = z₀ + r(n_x·(X₀−x₀) + n_y·(Y₀−y₀)) + (i−i₀)·r(n_x·2ˢ) + (j−j₀)·r(n_y·2ˢ), clamped to the range of the vertices'
 //!    z. `depth` = z + [`crate::lattice::DEPTH_ORIGIN`].
 //!
-//! *How 32 bits suffice.* E is twice the area of a triangle on the screen, at most 2³⁰. n_x, n_y take 46 bits and the
-//! arguments of r 62, once per triangle; the sums are taken modulo 2³²: the exact z of a covered pixel is within the vertices'
-//! range, inside (−2²⁹, 2²⁹), and rounding moves it by at most ½ + ½(i−i₀) + ½(j−j₀) < 2¹¹.
-//! *Accuracy of depth.* Against the plane through the snapped vertices: those roundings, at most 2⁻³ lattice steps at 1024²
-//! and 2⁻⁶ at 128².
+//! *How 32 bits suffice.* At pixel centres of the image, E is twice the area of a triangle on the image, at most 2³⁰; beyond it E
+//! may leave 32 bits, so that no path looks there. n_x and n_y are below 2⁴⁶ and the arguments of r below 2⁶², once per triangle; the
+//! sums are taken modulo 2³²: the exact z of a covered pixel is within the vertices' range, inside (−2²⁹, 2²⁹), and rounding
+//! moves it by at most ½ + ½(i−i₀) + ½(j−j₀) < 2¹⁰.
+//! *Accuracy of depth.* Against the plane through the vertices as they are on the screen: those roundings, at most 2⁻⁴ lattice
+//! steps at 1024² and 2⁻⁷ at 128².
 //!
 //! *Paths.* Small triangles (few pixels in their bounds) are tested pixel by pixel. Large ones are cut into 4 × 4 blocks which
 //! are outside, inside or on an edge; into runs of pixels; or into spans between their edges. [`RasterizeLhbParams::path`]
 //! forces one of them for all triangles. All give the same bits.
 //! *Cap.* With [`RasterizeLhbParams::layer_cap`] K > 0, each list keeps the K elements that come first ([`CAP_NEAR`]) or last
 //! ([`CAP_FAR`]) in its order, and `left_out[i]` counts the rest. Without a cap `left_out` is empty.
-//! *Opposite views.* A list read backwards, with facing inverted, is the list of the opposite direction.
+//! *Opposite views.* A list read backwards, with facing inverted, stands for that of the opposite direction, which need not be
+//! drawn. Drawn, it has the same surfaces in mirrored columns, except where a centre is on an edge or a coordinate half-way
+//! between two, and depths within 2(N−1) + 1 units.
 //! *Edge cases.* No triangles, no views: no elements, `offsets` is V·N² + 1 zeros. Equal depths: the lower triangle first.
-//! *Limits.* V·N² < [`crate::kernels::scan::MAX_LEN`]; fewer than 2³² elements; both are checked before elements are allocated.
+//! *Limits.* V·N² < [`crate::kernels::scan::MAX_LEN`]; fewer than 2³² elements after the cap; both are checked
+//! before elements are allocated.
 //! *Source.* Yu, layered hit buffers; Pineda, "A parallel algorithm for polygon rasterization", 1988; top-left rule of
 //! Direct3D 11 §3.4.2.1. Deviation from Yu: lists of any length, in an order of their own, and back faces are kept.
 
@@ -144,8 +148,9 @@ impl RasterizeLhbParams {
     /// The number of lists, if the call is sound.
     ///
     /// # Errors
-    /// [`Error::InvalidInput`] for a view out of its budget or an unknown path or side; [`Error::LimitExceeded`] for a size or a number
-    /// of lists beyond the limits.
+    /// [`Error::InvalidInput`] for a size of 0, a view out of its budget or an unknown path or side;
+    /// [`Error::LimitExceeded`] for a size or a number of lists beyond the limits. Views are not checked for being
+    /// right-handed: facing is by the sign of A.
     pub fn check(&self, views: &[View]) -> Result<usize> {
         if self.path > PATH_SPANS {
             return Err(Error::invalid("path", format!("{} is none of 0 to {PATH_SPANS}", self.path)));

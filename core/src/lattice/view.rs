@@ -40,8 +40,8 @@ impl View {
     /// The opposite direction has the same rows with `right` and `forward` negated: a mirror image of the same lines.
     ///
     /// # Errors
-    /// [`Error::InvalidInput`] for a direction that is 0 or not finite, [`Error::LimitExceeded`] for a size of 0 or beyond
-    /// [`MAX_SIZE`].
+    /// [`Error::InvalidInput`] for a direction that is 0 or not finite or a size of 0, [`Error::LimitExceeded`] for a size
+    /// beyond [`MAX_SIZE`].
     pub fn along(direction: DVec3, size: u32) -> Result<Self> {
         check_size(size)?;
         let Some(forward) = direction.try_normalize() else {

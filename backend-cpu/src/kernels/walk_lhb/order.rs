@@ -37,8 +37,14 @@ impl Order {
         }
     }
 
-    pub(super) fn walkers(&self) -> &[u32] {
-        &self.walkers
+    /// Those whose rays are traced.
+    pub(super) fn traced(&self) -> &[u32] {
+        &self.walkers[..self.begins[0] as usize]
+    }
+
+    /// Those whose rays are looked up, by view.
+    pub(super) fn looked_up(&self) -> &[u32] {
+        &self.walkers[self.begins[0] as usize..]
     }
 
     pub(super) fn is_empty(&self) -> bool {
