@@ -14,8 +14,8 @@ pub struct LoadOptions {
     pub allow_paths: Vec<PathBuf>,
     /// Makes errors of what is otherwise a notice: unknown keys, missing material libraries and textures.
     pub strict: bool,
-    /// Which animation of a glTF file is played: its name, or its number from 0. Without it, the first; other formats have
-    /// none to choose from.
+    /// Which animation of a glTF file is played: its name, or its number from 0. Without it, the first. Means nothing for
+    /// files without animations.
     pub animation: Option<String>,
 }
 

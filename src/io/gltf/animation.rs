@@ -72,6 +72,10 @@ impl Document<'_> {
         let Some(wish) = self.options.animation.as_deref() else {
             return Ok((!animations.is_empty()).then_some(0));
         };
+        // One wish may be for several files of a scene, some of which stand still.
+        if animations.is_empty() {
+            return Ok(None);
+        }
         let named = |a: &JsonAnimation| a.name.as_deref() == Some(wish);
         if let Some(index) = animations.iter().position(named) {
             return Ok(Some(index));
@@ -84,7 +88,6 @@ impl Document<'_> {
         let listed: Vec<String> =
             names.iter().take(LISTED).map(|name| text::shown(name.as_bytes())).collect();
         let known = match animations.len() {
-            0 => "the file has none".into(),
             n if listed.is_empty() => format!("there are numbers 0 to {}", n - 1),
             n => format!("there are {n}: {}{}", listed.join(", "), if n > listed.len() { ", …" } else { "" }),
         };

@@ -1,9 +1,10 @@
 //! From the tables of a scene file to one scene.
 
+use super::adopt::{self, Follows, Placement};
 use super::document::{Document, InstanceTable, MeshTable};
 use super::held::Held;
 use super::source::Source;
-use super::{RenderSettings, light, material, place, view};
+use super::{RenderSettings, light, material, motion, place, view};
 use crate::io::resolve::{Files, refused};
 use crate::io::{LoadOptions, builtin, image, load, text};
 use std::collections::BTreeMap;
@@ -31,6 +32,8 @@ pub(super) struct Nesting {
 /// What a mesh file contributes wherever it is placed. Indices are those of the whole scene.
 struct Part {
     instances: Vec<Instance>,
+    /// What each instance follows.
+    follows: Vec<Option<Follows>>,
     lights: Vec<Light>,
     camera: Option<Camera>,
     placed: bool,
@@ -97,7 +100,8 @@ impl Builder<'_> {
         }
         for i in 0..self.parts.len() {
             if !self.parts[i].placed {
-                self.place(i, &Transform::IDENTITY, None, &(0..0))?;
+                let placement = Placement { transform: Transform::IDENTITY, track: None };
+                self.place(i, &placement, None, &(0..0))?;
             }
         }
         for table in &document.light {
@@ -159,7 +163,11 @@ impl Builder<'_> {
             let count = nesting.mesh_files.into();
             return Err(Error::limit("mesh files of the scene", count, MAX_MESH_FILES.into()));
         }
-        let own = self.load(&table.path, nesting)?;
+        let own = self.load(table, nesting)?;
+        if let Some(animation) = table.animation.as_ref().filter(|_| own.motion.is_empty()) {
+            let what = format!("'{}' has no animation that could be played", shown(&table.path));
+            return Err(self.source.error(&animation.span(), what));
+        }
         let material = table.material.as_ref().map(|m| self.material_index(m)).transpose()?;
         let part = self.absorb(own, name.get_ref(), material)?;
         self.part_by_name.insert(name.get_ref().clone(), self.parts.len());
@@ -167,7 +175,10 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn load(&self, path: &Spanned<String>, nesting: &mut Nesting) -> Result<Scene> {
+    fn load(&self, table: &MeshTable, nesting: &mut Nesting) -> Result<Scene> {
+        let path = &table.path;
+        let mut options = self.remaining();
+        options.animation = table.animation.as_ref().map(|a| a.get_ref().clone()).or(options.animation);
         let (text, place) = (path.get_ref(), self.source.place(&path.span()));
         if let Some(name) = text.strip_prefix(builtin::PREFIX) {
             return builtin::load(name).map_err(|e| refused(e, &place, "mesh", text));
@@ -179,9 +190,9 @@ impl Builder<'_> {
         let files = self.files.beside(text).map_err(refuse)?;
         let load::Reader::Scene(parse) = reader else {
             self.check_nesting(text, &place, nesting)?;
-            return scene(&bytes, name, files.as_ref(), &self.remaining(), nesting).map(|(scene, _)| scene);
+            return scene(&bytes, name, files.as_ref(), &options, nesting).map(|(scene, _)| scene);
         };
-        parse(&bytes, name, files.as_ref(), &self.remaining())
+        parse(&bytes, name, files.as_ref(), &options)
     }
 
     /// The options less what the scene holds already.
@@ -235,13 +246,14 @@ impl Builder<'_> {
                 .notices
                 .push(format!("the environment of '{name}' is left out: only a scene's own counts"));
         }
-        let adopt = |i: Instance| Instance {
+        let follows = adopt::adopt(&mut self.scene.motion, own.motion, meshes, own.instances.len());
+        let adopted = |i: Instance| Instance {
             mesh: i.mesh + meshes,
             material: material.or(i.material.map(|m| m + materials)),
             ..i
         };
-        let instances = own.instances.into_iter().map(adopt).collect();
-        Ok(Part { instances, lights: own.lights, camera: own.camera, placed: false })
+        let instances = own.instances.into_iter().map(adopted).collect();
+        Ok(Part { instances, follows, lights: own.lights, camera: own.camera, placed: false })
     }
 
     fn instance(&mut self, table: &InstanceTable) -> Result<()> {
@@ -251,15 +263,27 @@ impl Builder<'_> {
             let what = format!("no mesh is called '{}'{hint}", shown(&table.mesh));
             return Err(self.source.error(&table.mesh.span(), what));
         };
-        let transform = place::transform(table, &self.source)?;
+        let mut transform = place::transform(table, &self.source)?;
+        let moving = motion::moving(table, &self.source, self.remaining().limits.max_bytes)?;
+        if let Some(moving) = &moving {
+            transform = moving.track.at(0.0).or_point();
+            self.held.bytes += moving.bytes;
+            self.scene.motion.duration = self.scene.motion.duration.max(moving.duration);
+            if !self.parts[part].lights.is_empty() || self.parts[part].camera.is_some() {
+                let name = shown(&table.mesh);
+                let notice = format!("lights and cameras of '{name}' stay where its motion begins");
+                self.scene.notices.push(notice);
+            }
+        }
         let material = table.material.as_ref().map(|m| self.material_index(m)).transpose()?;
-        self.place(part, &transform, material, &table.mesh.span())
+        let placement = Placement { transform, track: moving.as_ref().map(|moving| &moving.track) };
+        self.place(part, &placement, material, &table.mesh.span())
     }
 
     fn place(
         &mut self,
         part: usize,
-        transform: &Transform,
+        placement: &Placement<'_>,
         material: Option<u32>,
         at: &std::ops::Range<usize>,
     ) -> Result<()> {
@@ -269,7 +293,16 @@ impl Builder<'_> {
         if count > MAX_INSTANCES {
             return Err(Error::limit("instances of the scene", count as u64, MAX_INSTANCES as u64));
         }
-        for instance in &part.instances {
+        let transform = &placement.transform;
+        let motion = &mut self.scene.motion;
+        let node = placement.node(motion, part.follows.iter().any(Option::is_some));
+        for (instance, follows) in part.instances.iter().zip(&part.follows) {
+            motion.bindings.extend(placement.bind(
+                self.scene.instances.len(),
+                instance,
+                follows.as_ref(),
+                node,
+            ));
             self.scene.instances.push(Instance {
                 transform: transform.then_inner(&instance.transform),
                 material: material.or(instance.material),
