@@ -19,7 +19,7 @@ fn parse(bytes: &[u8], animation: Option<&str>) -> Result<Scene> {
 }
 
 fn read(builder: &Builder) -> Scene {
-    parse(&builder.gltf(), None).unwrap()
+    parse(&builder.glb(), None).unwrap()
 }
 
 fn refusal(builder: &Builder) -> String {

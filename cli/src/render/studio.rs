@@ -24,7 +24,7 @@ pub struct Studio<'a> {
     device: Device,
     /// Asks for a stop.
     pub interrupt: Interrupt,
-    /// Every notice so far: what is said of one frame need not be said of the next.
+    /// Every notice so far, without its numbers: what is said of one frame need not be said of the next.
     said: BTreeSet<String>,
     /// Those about the device, which are about every picture.
     about_device: Vec<String>,
@@ -59,7 +59,7 @@ impl<'a> Studio<'a> {
         let mut notices = Vec::new();
         let said = &mut self.said;
         let mut tell = |text: String| {
-            if said.insert(text.clone()) {
+            if said.insert(text.replace(|c: char| c.is_ascii_digit(), "")) {
                 report::notice(&text);
             }
             notices.push(text);
