@@ -3,6 +3,7 @@
 use super::adopt::{self, Follows, Placement};
 use super::document::{Document, InstanceTable, MeshTable};
 use super::held::Held;
+use super::nesting::Nesting;
 use super::source::Source;
 use super::{RenderSettings, light, material, motion, place, view};
 use crate::io::resolve::{Files, refused};
@@ -12,22 +13,8 @@ use toml::Spanned;
 use twinlight_core::scene::{Camera, Instance, Light, Scene, Transform};
 use twinlight_core::{Error, Result};
 
-/// Scene files inside scene files, at most.
-const MAX_DEPTH: usize = 8;
-/// Mesh files of one scene, those of nested scene files included: eight levels of a few references each could
-/// otherwise ask for billions.
-const MAX_MESH_FILES: u32 = 4096;
-/// Placements of one scene, for the same reason.
+/// Placements of one scene: scene files within each other could otherwise ask for billions.
 const MAX_INSTANCES: usize = 1 << 20;
-
-/// The scene files that are being read.
-#[derive(Default)]
-pub(super) struct Nesting {
-    /// Identities of the open scene files, outermost first.
-    open: Vec<String>,
-    /// Mesh files read so far.
-    mesh_files: u32,
-}
 
 /// What a mesh file contributes wherever it is placed. Indices are those of the whole scene.
 struct Part {
@@ -49,7 +36,7 @@ pub(super) fn scene(
 ) -> Result<(Scene, RenderSettings)> {
     let source = Source::new(bytes, name)?;
     let document = source.document()?;
-    nesting.open.push(files.identity(name).unwrap_or_else(|_| name.to_owned()));
+    nesting.enter(files.identity(name).unwrap_or_else(|_| name.to_owned()));
     let mut builder = Builder {
         source,
         files,
@@ -62,7 +49,7 @@ pub(super) fn scene(
         held: Held::default(),
     };
     builder.fill(&document, nesting)?;
-    nesting.open.pop();
+    nesting.leave();
     let render = document.render;
     let settings = RenderSettings {
         size: render.size,
@@ -158,11 +145,7 @@ impl Builder<'_> {
             let what = format!("mesh '{}' is there twice; give each a name of its own", shown(name));
             return Err(self.source.error(&name.span(), what));
         }
-        nesting.mesh_files += 1;
-        if nesting.mesh_files > MAX_MESH_FILES {
-            let count = nesting.mesh_files.into();
-            return Err(Error::limit("mesh files of the scene", count, MAX_MESH_FILES.into()));
-        }
+        nesting.count_mesh_file()?;
         let own = self.load(table, nesting)?;
         if let Some(animation) = table.animation.as_ref().filter(|_| own.motion.is_empty()) {
             let what = format!("'{}' has no animation that could be played", shown(&table.path));
@@ -189,7 +172,7 @@ impl Builder<'_> {
         let bytes = self.files.read_path(text).map_err(refuse)?;
         let files = self.files.beside(text).map_err(refuse)?;
         let load::Reader::Scene(parse) = reader else {
-            self.check_nesting(text, &place, nesting)?;
+            nesting.check(&self.files.identity(text)?, text, &place)?;
             return scene(&bytes, name, files.as_ref(), &options, nesting).map(|(scene, _)| scene);
         };
         parse(&bytes, name, files.as_ref(), &options)
@@ -201,22 +184,6 @@ impl Builder<'_> {
         options.limits.max_triangles = options.limits.max_triangles.saturating_sub(self.held.triangles);
         options.limits.max_bytes = options.limits.max_bytes.saturating_sub(self.held.bytes);
         options
-    }
-
-    fn check_nesting(&self, path: &str, place: &str, nesting: &Nesting) -> Result<()> {
-        let identity = self.files.identity(path)?;
-        if nesting.open.contains(&identity) {
-            return Err(Error::invalid(place, format!("'{path}' includes itself")));
-        }
-        if nesting.open.len() >= MAX_DEPTH {
-            let depth = nesting.open.len() as u64 + 1;
-            return Err(Error::limit(
-                format!("{place}: scene files inside each other"),
-                depth,
-                MAX_DEPTH as u64,
-            ));
-        }
-        Ok(())
     }
 
     /// Takes over what another file describes.

@@ -51,6 +51,7 @@ mod held;
 mod light;
 mod material;
 mod motion;
+mod nesting;
 mod place;
 mod source;
 mod value;
@@ -95,7 +96,7 @@ pub fn parse_with_settings(
     files: &dyn Files,
     options: &LoadOptions,
 ) -> Result<(Scene, RenderSettings)> {
-    build::scene(bytes, name, files, options, &mut build::Nesting::default())
+    build::scene(bytes, name, files, options, &mut nesting::Nesting::default())
 }
 
 /// The JSON Schema of scene files.
