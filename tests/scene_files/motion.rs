@@ -68,6 +68,7 @@ fn bending(animation: &str) -> MemoryFiles {
     let glb = all.into_iter().find(|(path, _)| *path == "bending/bending.glb").unwrap().1;
     let text = format!(
         "[[mesh]]\nname = 'still'\npath = 'm.obj'\n[[mesh]]\nname = 'b'\npath = 'b.glb'\n{animation}\n\
+         [[mesh]]\nname = 'c'\npath = 'b.glb'\nanimation = 'Wave'\n\
          [[instance]]\nmesh = 'b'\ntranslate = [0, 0, 10]\n[[instance]]\nmesh = 'b'\n[[instance.motion]]\ntime = 0\n\
          translate = [0, 0, 0]\n[[instance.motion]]\ntime = 4\ntranslate = [0, 0, -4]\n"
     );
@@ -87,7 +88,9 @@ fn skinned_files_can_be_placed_and_moved() {
     let options = LoadOptions::default();
     let scene = read_bending("", &options).unwrap();
     scene.validate(&options.limits).unwrap();
-    assert_eq!(scene.moving(), [true, true, false, true, true, true, false]);
+    // b twice; then, each placed once, m.obj and c, which plays another animation.
+    let c = [false, true, false, false];
+    assert_eq!(scene.moving(), [&[true, true, false, true, true, true][..], &c].concat());
     let posed = scene.at(1.0).unwrap();
     let corner = |instance: usize, vertex: usize| {
         let instance = &posed.instances[instance];
@@ -96,6 +99,7 @@ fn skinned_files_can_be_placed_and_moved() {
     };
     assert_eq!(corner(0, 8), [-1.0, 1.125, 10.125]);
     assert_eq!(corner(3, 8), [-1.0, 1.125, -0.875]);
+    assert_eq!(corner(7, 8), [0.125, 0.875, 1.0]);
     let cube =
         |i: usize| posed.instances[i].transform.translation.to_array().map(|x| (x * 1e6).round() / 1e6);
     assert_eq!((cube(1), cube(4)), ([2.0, 0.55, 9.0], [2.0, 0.55, -2.0]));
