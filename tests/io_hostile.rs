@@ -139,6 +139,10 @@ fn gltf_files() {
     torment("gltf", 3000, |bytes| {
         if let Ok(scene) = gltf::parse(bytes, "hostile.gltf", &MemoryFiles::default(), &options) {
             let _ = compile(&scene, &options.limits);
+            for seconds in [0.0, 0.5 * scene.motion.duration] {
+                let posed = scene.at(seconds).expect("a motion that was read fits its scene");
+                let _ = compile(&posed, &options.limits);
+            }
         }
     });
 }

@@ -47,6 +47,8 @@ pub enum Failure {
     Differs(String),
     /// A signal; what was finished is saved.
     Signal(i32),
+    /// What ended a sequence, and at which frame.
+    Frame(u32, Box<Failure>),
 }
 
 impl Failure {
@@ -65,12 +67,17 @@ impl Failure {
             Self::Differs(_) => 10,
             // 128 + signal, as shells count; signals are small.
             Self::Signal(signal) => (128 + signal) as u8,
+            Self::Frame(_, failure) => failure.code(),
         }
     }
 
     /// What might help, as one sentence.
     pub fn hint(&self) -> Option<&'static str> {
-        let Self::Library(stage, error) = self else { return None };
+        let (stage, error) = match self {
+            Self::Library(stage, error) => (stage, error),
+            Self::Frame(_, failure) => return failure.hint(),
+            _ => return None,
+        };
         Some(match error {
             Error::BackendUnavailable { .. } => {
                 "`twinlight devices` lists what is here; `--backend cpu` runs everywhere"
@@ -114,6 +121,7 @@ impl fmt::Display for Failure {
             Self::Pictures(error) => error.fmt(f),
             Self::Usage(text) | Self::NothingRun(text) | Self::Differs(text) => f.write_str(text),
             Self::Signal(_) => f.write_str("interrupted; what was finished is saved"),
+            Self::Frame(number, failure) => write!(f, "frame {number}: {failure}"),
         }
     }
 }
@@ -157,5 +165,7 @@ mod tests {
         assert_eq!(Failure::Differs(String::new()).code(), 10);
         assert_eq!(Failure::Signal(2).code(), 130);
         assert_eq!(Failure::Signal(15).code(), 143);
+        let frame = Failure::Frame(7, Box::new(Failure::Signal(2)));
+        assert_eq!((frame.code(), frame.to_string().starts_with("frame 7: interrupted")), (130, true));
     }
 }

@@ -11,5 +11,9 @@ fuzz_target!(|bytes: &[u8]| {
     let options = LoadOptions { limits, ..LoadOptions::default() };
     if let Ok(scene) = gltf::parse(bytes, "fuzz.gltf", &MemoryFiles::default(), &options) {
         let _ = compile(&scene, &limits);
+        for seconds in [0.0, 0.5 * scene.motion.duration] {
+            let posed = scene.at(seconds).expect("a motion that was read fits its scene");
+            let _ = compile(&posed, &limits);
+        }
     }
 });

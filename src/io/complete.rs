@@ -1,6 +1,7 @@
 //! Cameras and lights for scenes that come without.
 
 use glam::DVec3;
+use std::borrow::Cow;
 use twinlight_core::scene::{COORDINATE_LIMIT, Camera, Light, Scene};
 
 /// Side of the made-up light, over its distance from what it lights: large enough for soft shadows.
@@ -14,6 +15,9 @@ const SMALLEST: f64 = 1e-6;
 /// small holes stay below it.
 const OPEN: f64 = 0.1;
 
+/// Parts of a motion whose ends are framed.
+const MOMENTS: u32 = 8;
+
 /// Gives a scene without a camera one that frames it, from its open side if it has one, and a scene without light a
 /// rectangle beside the camera, each with a notice.
 ///
@@ -21,11 +25,14 @@ const OPEN: f64 = 0.1;
 /// space, so the light does too, whether the scene is a single object seen from outside or a closed room seen from inside;
 /// and no camera ray can meet it. Its radiance makes a white surface in the middle of the view about as bright as
 /// radiance 1.
+///
+/// Of a scene that moves, what is framed is where it is at a few moments of its motion.
 pub fn complete(scene: &mut Scene) {
-    let bounds = finite_bounds(scene);
+    let (begin, bounds) = stage(scene);
     if scene.camera.is_none() {
         let (lo, hi) = bounds.unwrap_or((DVec3::NEG_ONE, DVec3::ONE));
-        scene.camera = Some(Camera::framing_from((lo, hi), open_side(scene).unwrap_or(DVec3::Z)));
+        let side = open_side(&begin).unwrap_or(DVec3::Z);
+        scene.camera = Some(Camera::framing_from((lo, hi), side));
         scene.notices.push("no camera in the scene: one that frames it is used".into());
     }
     if scene.has_light() || bounds.is_none() {
@@ -37,6 +44,28 @@ pub fn complete(scene: &mut Scene) {
         scene.lights.push(light);
         scene.notices.push("no light in the scene: a rectangle light just above the camera is used".into());
     }
+}
+
+/// The scene, or when it moves, its geometry as it begins; and the bounds of what it fills, from the first moment to the last.
+fn stage(scene: &Scene) -> (Cow<'_, Scene>, Option<(DVec3, DVec3)>) {
+    if scene.motion.is_empty() {
+        return (Cow::Borrowed(scene), finite_bounds(scene));
+    }
+    // Pictures are large and play no part here.
+    let geometry = Scene {
+        meshes: scene.meshes.clone(),
+        instances: scene.instances.clone(),
+        motion: scene.motion.clone(),
+        ..Scene::default()
+    };
+    // A motion that does not fit the scene is refused where the scene is posed to be rendered.
+    let at = |moment: u32| geometry.at(scene.motion.duration * f64::from(moment) / f64::from(MOMENTS)).ok();
+    let bounds = (0..=MOMENTS).filter_map(|moment| finite_bounds(&at(moment)?)).reduce(union);
+    (Cow::Owned(at(0).unwrap_or_default()), bounds)
+}
+
+fn union((lo, hi): (DVec3, DVec3), (other_lo, other_hi): (DVec3, DVec3)) -> (DVec3, DVec3) {
+    (lo.min(other_lo), hi.max(other_hi))
 }
 
 fn beside_camera(camera: &Camera, (lo, hi): (DVec3, DVec3)) -> Option<Light> {

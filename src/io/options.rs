@@ -14,10 +14,19 @@ pub struct LoadOptions {
     pub allow_paths: Vec<PathBuf>,
     /// Makes errors of what is otherwise a notice: unknown keys, missing material libraries and textures.
     pub strict: bool,
+    /// Which animation of a glTF file is played: its name, or its number from 0. Without it, the first. Means nothing for
+    /// files without animations.
+    pub animation: Option<String>,
 }
 
 impl Default for LoadOptions {
     fn default() -> Self {
-        Self { limits: Limits::default(), max_file_bytes: 4 << 30, allow_paths: Vec::new(), strict: false }
+        Self {
+            limits: Limits::default(),
+            max_file_bytes: 4 << 30,
+            allow_paths: Vec::new(),
+            strict: false,
+            animation: None,
+        }
     }
 }

@@ -5,6 +5,7 @@ mod completion;
 mod errors;
 mod folders;
 mod limits;
+mod motion;
 mod obj;
 mod ply;
 mod toml_scenes;

@@ -10,7 +10,7 @@ pub use compare::CompareArgs;
 pub use conform::ConformArgs;
 pub use render::{ConeName, LoadArgs, MethodName, ModeName, ProgressMode, RenderArgs, ToneArgs};
 pub use scene::{ConvertArgs, InspectArgs, SceneCommand};
-pub use values::{BackendChoice, Bounces, Size};
+pub use values::{BackendChoice, Bounces, FrameRange, Size};
 
 use crate::exit;
 use clap::{Parser, Subcommand};

@@ -1,6 +1,8 @@
 //! `render`.
 
-use super::values::{BackendChoice, Bounces, Bytes, CameraArg, Size, seconds};
+use super::values::{
+    BackendChoice, Bounces, Bytes, CameraArg, FrameRange, Size, frame_rate, moment, seconds,
+};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use twinlight::directions::DirectionSet;
@@ -17,10 +19,13 @@ Examples:
       a scene file's own settings count until a flag says otherwise
   twinlight render bunny.ply --time 10 --size 800x600 --camera \"0,0.1,0.4 0,0.1,0 35\"
       as many samples as fit into ten seconds
+  twinlight render fox.glb --animation Run --frames 0.. -o run/fox.png
+      every frame of an animation: run/fox-0000.png, run/fox-0001.png and so on
   twinlight render builtin:cornell --backend gpu:llvmpipe --mode strict
       on a GPU adapter, bit for bit what the CPU renders
 
-Ctrl-C ends the render and saves what is finished (exit code 130); twice: at once, nothing is saved.";
+Ctrl-C ends the render and saves what is finished (exit code 130), of a sequence the frames that are complete; twice: at
+once, nothing is saved.";
 
 /// Where a scene comes from and what it may need.
 #[derive(Debug, Args)]
@@ -38,6 +43,9 @@ pub struct LoadArgs {
     /// Refuse what else is a notice: unknown keys, missing textures
     #[arg(long)]
     pub strict: bool,
+    /// Play this animation of glTF files, by its name or its number from 0 [default: the first]
+    #[arg(long, value_name = "NAME|N", env = "TWINLIGHT_ANIMATION")]
+    pub animation: Option<String>,
 }
 
 impl LoadArgs {
@@ -47,6 +55,7 @@ impl LoadArgs {
             limits: self.limits(),
             allow_paths: self.allow_path.clone(),
             strict: self.strict,
+            animation: self.animation.clone(),
             ..LoadOptions::default()
         }
     }
@@ -253,6 +262,25 @@ pub struct RenderArgs {
     pub camera: Option<CameraArg>,
     #[command(flatten, next_help_heading = "Picture")]
     pub tone: ToneArgs,
+
+    /// Render these frames of a scene that moves, each to files of its own
+    ///
+    /// FIRST up to but without END; without END, to the end of the motion. Frame N shows the scene at N/fps seconds.
+    /// Outputs are numbered: a.png becomes a-0000.png, a-0001.png and so on; {frame} in a name says where the number goes.
+    /// Frames that are there already are rendered again. --time counts for each frame.
+    #[arg(long, value_name = "FIRST..END", env = "TWINLIGHT_FRAMES", help_heading = "Motion")]
+    pub frames: Option<FrameRange>,
+    /// Frames per second of --frames
+    #[arg(long, value_name = "N", env = "TWINLIGHT_FPS", default_value = "24", help_heading = "Motion",
+          value_parser = frame_rate, allow_negative_numbers = true)]
+    pub fps: f64,
+    /// Render one picture of a scene that moves, at this many seconds [default: 0]
+    #[arg(long, value_name = "SECONDS", env = "TWINLIGHT_AT", help_heading = "Motion", value_parser = moment,
+          conflicts_with = "frames", allow_negative_numbers = true)]
+    pub at: Option<f64>,
+    /// Begin the motion anew when it is over, instead of staying as it ends
+    #[arg(long = "loop", help_heading = "Motion")]
+    pub looped: bool,
 
     /// Where kernels run: auto, cpu, gpu, or gpu:SELECTOR (see `twinlight devices`)
     ///

@@ -105,6 +105,46 @@ pub fn seconds(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "write seconds above 0, such as 10 or 2.5".into())
 }
 
+/// Seconds of a motion, such as `0`, `1.5` or `2s`.
+pub fn moment(text: &str) -> Result<f64, String> {
+    let number = text.strip_suffix('s').unwrap_or(text).parse::<f64>();
+    let moment = number.ok().filter(|s| (0.0..=31_536_000.0).contains(s));
+    moment.ok_or_else(|| "write seconds from 0 on, such as 1 or 2.5".into())
+}
+
+/// Frames per second.
+pub fn frame_rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| (0.001..=100_000.0).contains(rate));
+    rate.ok_or_else(|| "write frames per second above 0, such as 24 or 29.97".into())
+}
+
+/// Most frames of a sequence.
+const MAX_FRAMES: u32 = 1_000_000;
+
+/// `FIRST..END`, or `FIRST..` up to the end of the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FrameRange {
+    /// The first frame.
+    pub first: u32,
+    /// The first that is not rendered any more.
+    pub end: Option<u32>,
+}
+
+impl FromStr for FrameRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.parse().ok().filter(|&n: &u32| n <= MAX_FRAMES);
+        let range = text.split_once("..").and_then(|(first, end)| {
+            let end = if end.is_empty() { None } else { Some(number(end)?) };
+            let range = Self { first: number(first)?, end };
+            range.end.is_none_or(|end| range.first < end).then_some(range)
+        });
+        let form = "such as 0..48 for the 48 frames 0 to 47, or 0.. for all";
+        range.ok_or_else(|| format!("write FIRST..END, {form}; numbers up to {MAX_FRAMES}"))
+    }
+}
+
 /// Which backend runs the kernels.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum BackendChoice {
@@ -180,6 +220,17 @@ mod tests {
         for bad in ["0", "-1", "nan", "inf", "s", "1e9"] {
             assert!(seconds(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn frame_ranges_and_moments() {
+        assert_eq!("0..48".parse(), Ok(FrameRange { first: 0, end: Some(48) }));
+        assert_eq!("7..".parse(), Ok(FrameRange { first: 7, end: None }));
+        for bad in ["", "..", "..5", "5", "5..5", "6..5", "0..=5", "0..1000001", "-1..2", "0...5"] {
+            assert!(bad.parse::<FrameRange>().is_err(), "{bad}");
+        }
+        assert_eq!((moment("0"), moment("1.5s"), frame_rate("29.97")), (Ok(0.0), Ok(1.5), Ok(29.97)));
+        assert!(moment("-1").is_err() && moment("nan").is_err() && frame_rate("0").is_err());
     }
 
     #[test]

@@ -2,24 +2,29 @@
 
 mod job;
 mod layers;
+mod moment;
 mod output;
 mod passes;
 mod progress;
 mod run;
+mod sequence;
 mod sidecar;
+mod studio;
 mod summary;
 
-use crate::args::{ModeName, ProgressMode, RenderArgs};
-use crate::device::Device;
+use crate::args::{ProgressMode, RenderArgs};
 use crate::exit::{Failure, Stage};
 use crate::interrupt::Interrupt;
-use crate::{device, report, source};
+use crate::report;
+use crate::source::{self, Loaded};
 use job::Job;
+use moment::{Moment, Plan};
 use output::Outputs;
 use passes::Stop;
 use std::time::Instant;
+use studio::Studio;
 use twinlight::Error;
-use twinlight::methods::post::tonemap::Display;
+use twinlight::methods::post::tonemap;
 
 /// Runs the command.
 ///
@@ -27,36 +32,44 @@ use twinlight::methods::post::tonemap::Display;
 /// Everything in [`Failure`] but comparisons.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
-    let display = Display::new(args.tone.exposure, args.tone.tonemap).map_err(Failure::Pictures)?;
+    let tone = tonemap::Display::new(args.tone.exposure, args.tone.tonemap).map_err(Failure::Pictures)?;
     let outputs = Outputs::plan(&args.outputs, &source::stem(&args.scene))?;
-    let prepared = source::prepare(&args.scene, &args.load, args.camera.map(|c| c.0))?;
+    let loaded = source::load(&args.scene, &args.load, args.camera.map(|c| c.0))?;
+    let moment = match Plan::new(args, &loaded.scene)? {
+        Plan::Still => None,
+        Plan::Moment(moment) => Some(moment),
+        Plan::Frames(frames) => {
+            sequence::prepare_folders(&outputs, &frames)?;
+            let mut studio = Studio::open(args, tone, watch()?)?;
+            return sequence::run(args, &loaded, &frames, &outputs, &mut studio);
+        }
+    };
+    picture(args, tone, &loaded, moment, &outputs, start)
+}
+
+/// Renders and saves one picture, or as much of it as there is when it ends early.
+fn picture(
+    args: &RenderArgs,
+    tone: tonemap::Display,
+    loaded: &Loaded,
+    moment: Option<Moment>,
+    outputs: &Outputs,
+    start: Instant,
+) -> Result<(), Failure> {
+    let mut prepared = loaded.at(moment.map_or(0.0, |moment| moment.seconds))?;
+    if moment.is_some() && args.at.is_none() {
+        let seconds = loaded.scene.motion.duration;
+        prepared.notices.push(format!(
+            "the scene moves for {seconds:.3} s, and this is how it begins: --frames 0.. renders all of it, --at SECONDS \
+             another moment"
+        ));
+    }
     let job = Job::new(args, &prepared)?;
     outputs.prepare_folders()?;
-    let interrupt = Interrupt::watch()
-        .map_err(|e| Failure::Library(Stage::Device, Error::Internal(format!("signal handlers: {e}"))))?;
-
-    let mut notices = Vec::new();
-    let mut tell = |text: String| {
-        report::notice(&text);
-        notices.push(text);
-    };
-    prepared.notices.iter().cloned().for_each(&mut tell);
-    let (device, unavailable) = device::open(&args.backend, args.mode, args.threads)?;
-    unavailable.into_iter().for_each(&mut tell);
-    if args.mode == Some(ModeName::Portable) && matches!(device, Device::Cpu(_)) {
-        tell(
-            "--mode portable is for GPUs: the CPU, which renders this, always computes as in strict mode"
-                .into(),
-        );
-    }
-    let done = run::render(device, args, &prepared, &job, &interrupt, &mut tell)?;
-
-    let write_start = Instant::now();
-    let pictures = layers::Pictures::new(&done.taken.film, done.gbuffer.as_deref(), display)?;
-    outputs.write(&pictures, &sidecar::attributes(args, &job, &done))?;
-    let times = sidecar::Times { write: write_start.elapsed(), total: start.elapsed() };
-    outputs.write_sidecar(&sidecar::json(args, &prepared, &job, &done, &outputs, &notices, &times))?;
-    report::print(&outputs.list())?;
+    let mut studio = Studio::open(args, tone, watch()?)?;
+    let rendered = studio.render(&prepared, &job, &mut progress::Display::new(args.progress, None))?;
+    studio.save(&prepared, &job, &rendered, moment, outputs, start)?;
+    let done = rendered.0;
     if matches!(args.progress, ProgressMode::Auto | ProgressMode::Plain) {
         report::status(&summary::line(&done));
     }
@@ -65,4 +78,9 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         (None, Stop::Signal(signal)) => Err(Failure::Signal(signal)),
         (None, _) => Ok(()),
     }
+}
+
+fn watch() -> Result<Interrupt, Failure> {
+    Interrupt::watch()
+        .map_err(|e| Failure::Library(Stage::Device, Error::Internal(format!("signal handlers: {e}"))))
 }

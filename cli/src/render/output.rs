@@ -7,6 +7,9 @@ use twinlight::Error;
 use twinlight::io::image::{exr, png};
 use twinlight::io::write_file;
 
+/// Where the number of a frame goes.
+const PLACEHOLDER: &str = "{frame}";
+
 /// Formats of pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Format {
@@ -29,18 +32,33 @@ impl Outputs {
     pub fn plan(paths: &[PathBuf], stem: &str) -> Result<Self, Failure> {
         let defaults = [format!("{stem}.png").into(), format!("{stem}.exr").into()];
         let paths = if paths.is_empty() { &defaults[..] } else { paths };
-        let mut pictures: Vec<(PathBuf, Format)> = Vec::new();
+        let mut pictures = Vec::new();
         for path in paths {
-            if pictures.iter().any(|(other, _)| other == path) {
-                return Err(Failure::Usage(format!("'{}' is asked for twice", path.display())));
-            }
             if path.is_dir() {
                 return Err(Failure::Usage(folder_instead(path, stem)));
             }
             pictures.push((path.clone(), format_of(path)?));
         }
+        Self::of(pictures)
+    }
+
+    fn of(pictures: Vec<(PathBuf, Format)>) -> Result<Self, Failure> {
+        let again = |i: usize| pictures[..i].iter().any(|(other, _)| *other == pictures[i].0);
+        if let Some(twice) = (0..pictures.len()).find(|&i| again(i)) {
+            return Err(Failure::Usage(format!("'{}' is asked for twice", pictures[twice].0.display())));
+        }
         let sidecar = pictures[0].0.with_extension("json");
         Ok(Self { pictures, sidecar })
+    }
+
+    /// The files of a frame: the number, of at least `digits` digits, stands where a name has `{frame}`, else before the
+    /// extension.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for one file asked for twice.
+    pub fn of_frame(&self, number: u32, digits: usize) -> Result<Self, Failure> {
+        let number = format!("{number:0digits$}");
+        Self::of(self.pictures.iter().map(|(path, format)| (numbered(path, &number), *format)).collect())
     }
 
     /// Makes the folders and sees whether files can be made in them: better now than after hours of rendering.
@@ -99,6 +117,15 @@ impl Outputs {
     }
 }
 
+fn numbered(path: &Path, number: &str) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    if name.contains(PLACEHOLDER) {
+        return path.with_file_name(name.replace(PLACEHOLDER, number));
+    }
+    let (stem, extension) = name.rsplit_once('.').unwrap_or((&name, ""));
+    path.with_file_name(format!("{stem}-{number}.{extension}"))
+}
+
 fn folder_instead(path: &Path, stem: &str) -> String {
     let inside = path.join(format!("{stem}.png"));
     format!("'{}' is a folder: name a file in it, such as '{}'", path.display(), inside.display())
@@ -131,6 +158,15 @@ mod tests {
         assert_eq!(outputs.list(), "room.png\nroom.exr\nroom.json\n");
         let outputs = Outputs::plan(&["a/b.EXR".into(), "c.png".into()], "room").unwrap();
         assert_eq!(outputs.list(), "a/b.EXR\nc.png\na/b.json\n");
+        let frame = outputs.of_frame(7, 4).unwrap();
+        assert_eq!(frame.list(), "a/b-0007.EXR\nc-0007.png\na/b-0007.json\n");
+        let named = Outputs::plan(&["{frame}/of-{frame}.x.png".into()], "room").unwrap();
+        assert_eq!(
+            named.of_frame(12345, 4).unwrap().list(),
+            "{frame}/of-12345.x.png\n{frame}/of-12345.x.json\n"
+        );
+        let twice = Outputs::plan(&["a.png".into(), "a-{frame}.png".into()], "room").unwrap();
+        assert!(matches!(twice.of_frame(1, 4), Err(Failure::Usage(_))));
         for bad in [&["a"][..], &["a.json"], &[".png"], &[""], &["a.png", "a.png"]] {
             let paths: Vec<PathBuf> = bad.iter().map(PathBuf::from).collect();
             assert!(matches!(Outputs::plan(&paths, "room"), Err(Failure::Usage(_))), "{bad:?}");

@@ -46,18 +46,19 @@ pub struct Done {
 /// # Errors
 /// What the backend and the method refuse.
 pub fn render(
-    device: Device,
+    device: &Device,
     args: &RenderArgs,
     prepared: &Prepared,
     job: &Job,
     interrupt: &Interrupt,
+    display: &mut Display,
     tell: &mut impl FnMut(String),
 ) -> Result<Done, Failure> {
-    let session = Session { args, prepared, job, interrupt };
+    let mut session = Session { args, prepared, job, interrupt, display };
     let done = match device {
-        Device::Cpu(backend) => session.run(&backend, tell),
+        Device::Cpu(backend) => session.run(backend, tell),
         #[cfg(feature = "gpu")]
-        Device::Gpu(backend) => match session.run(&*backend, tell) {
+        Device::Gpu(backend) => match session.run(&**backend, tell) {
             Err(error) if args.backend == crate::args::BackendChoice::Auto && fits_elsewhere(&error) => {
                 tell(format!("{} can't render this, the CPU does: {error}", backend.info().device));
                 session.run(&crate::device::cpu(args.threads)?, tell)
@@ -76,13 +77,14 @@ fn fits_elsewhere(error: &Error) -> bool {
 
 struct Session<'a> {
     args: &'a RenderArgs,
-    prepared: &'a Prepared,
+    prepared: &'a Prepared<'a>,
     job: &'a Job,
     interrupt: &'a Interrupt,
+    display: &'a mut Display,
 }
 
 impl Session<'_> {
-    fn run<B: Backend>(&self, backend: &B, tell: &mut impl FnMut(String)) -> twinlight::Result<Done> {
+    fn run<B: Backend>(&mut self, backend: &B, tell: &mut impl FnMut(String)) -> twinlight::Result<Done> {
         let compiled = &self.prepared.compiled;
         let start = Instant::now();
         let resident = backend.upload_scene(compiled)?;
@@ -99,21 +101,21 @@ impl Session<'_> {
             bytes: buffers.bytes(backend),
         });
 
-        let mut display = Display::new(self.args.progress);
         let caught = || self.interrupt.caught();
-        let taken = passes::take(backend, &resident, compiled, buffers.as_ref(), self.job, caught, |p| {
-            display.update(&p)
-        });
-        display.finish();
+        let observe = |progress| self.display.update(&progress);
+        let taken = passes::take(backend, &resident, compiled, buffers.as_ref(), self.job, caught, observe);
+        self.display.clear();
         let taken = taken?;
-        if let Some(lost) = &taken.lost {
+        // Of a sequence, complete frames are saved and no others.
+        let saved = self.args.frames.is_none();
+        if let Some(lost) = taken.lost.as_ref().filter(|_| saved) {
             tell(format!("{lost}; what was finished before is saved"));
         }
 
         let start = Instant::now();
         // A lost device answers nothing more, and an interrupted user waits for nothing more.
         let wanted = matches!(taken.stop, Stop::Samples | Stop::Time);
-        if !wanted {
+        if !wanted && saved {
             tell(format!(
                 "no albedo, normal, depth and id layers: the render ended early ({})",
                 taken.stop.name()

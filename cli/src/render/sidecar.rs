@@ -1,6 +1,7 @@
 //! How a picture was made, for machines: the JSON beside it and the attributes in the EXR header.
 
 use super::job::Job;
+use super::moment::Moment;
 use super::output::Outputs;
 use super::run::Done;
 use crate::args::RenderArgs;
@@ -27,10 +28,15 @@ fn sampler_name(sampler: Sampler) -> &'static str {
 
 /// What goes into EXR headers: only what the pixels depend on, so that the same picture is the same file whatever the
 /// number of threads and the hour.
-pub fn attributes(args: &RenderArgs, job: &Job, done: &Done) -> Vec<(&'static str, String)> {
+pub fn attributes(
+    args: &RenderArgs,
+    job: &Job,
+    done: &Done,
+    moment: Option<Moment>,
+) -> Vec<(&'static str, String)> {
     let settings = &job.settings;
     let mode = if done.info.strict { "strict" } else { "portable" };
-    vec![
+    let mut attributes = vec![
         ("version", env!("CARGO_PKG_VERSION").into()),
         ("scene", source::stem(&args.scene)),
         ("method", job.method.key().into()),
@@ -42,7 +48,9 @@ pub fn attributes(args: &RenderArgs, job: &Job, done: &Done) -> Vec<(&'static st
         ("samples", done.taken.samples().0.to_string()),
         ("bounces", settings.bounces.map_or("unlimited".into(), |n| n.to_string())),
         ("stop", done.taken.stop.name().into()),
-    ]
+    ];
+    attributes.extend(moment.map(|moment| ("seconds", moment.seconds.to_string())));
+    attributes
 }
 
 /// The sidecar.
@@ -51,6 +59,7 @@ pub fn json(
     prepared: &Prepared,
     job: &Job,
     done: &Done,
+    moment: Option<Moment>,
     outputs: &Outputs,
     notices: &[String],
     times: &Times,
@@ -63,6 +72,7 @@ pub fn json(
     let value = json!({
         "twinlight": env!("CARGO_PKG_VERSION"),
         "scene": { "source": args.scene, "triangles": prepared.scene.triangle_count() },
+        "moment": moment.map(|m| json!({ "seconds": m.seconds, "frame": m.frame })),
         "files": outputs.pictures().map(|p| p.display().to_string()).collect::<Vec<_>>(),
         "settings": {
             "method": job.method.key(),

@@ -1,6 +1,7 @@
 //! How a render went, in a line for people.
 
 use super::run::Done;
+use std::time::Duration;
 use twinlight::BackendInfo;
 
 /// Such as `64 samples per pixel in 2.1 s (2.0 M paths/s, CPU, 2 threads)`.
@@ -14,6 +15,13 @@ pub fn line(done: &Done) -> String {
     let seconds = done.taken.elapsed.as_secs_f64();
     let rate = magnitude(done.taken.paths_per_second());
     format!("{samples} per pixel in {seconds:.1} s ({rate}paths/s, {})", device(&done.info))
+}
+
+/// Such as `48 frames in 100.2 s (2.1 s per frame, CPU, 2 threads)`.
+pub fn frames_line(count: u32, elapsed: Duration, info: &BackendInfo) -> String {
+    let seconds = elapsed.as_secs_f64();
+    let frames = if count == 1 { "1 frame".into() } else { format!("{count} frames") };
+    format!("{frames} in {seconds:.1} s ({:.1} s per frame, {})", seconds / f64::from(count), device(info))
 }
 
 fn device(info: &BackendInfo) -> String {

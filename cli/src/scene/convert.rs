@@ -23,11 +23,14 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         let what = format!("'{}' is the scene that is read: name another file", args.output.display());
         return Err(Failure::Usage(what));
     }
-    let (scene, settings) =
+    let (mut scene, settings) =
         load_with_settings(&args.scene, &args.load.options()).map_err(Failure::at(Stage::Input))?;
-    scene
-        .validate(&args.load.limits())
-        .map_err(|error| Failure::Library(Stage::Input, in_file(&args.scene, error)))?;
+    let refused = |error| Failure::Library(Stage::Input, in_file(&args.scene, error));
+    scene.validate(&args.load.limits()).map_err(refused)?;
+    if !scene.motion.is_empty() {
+        scene = scene.at(0.0).map_err(refused)?;
+        report::notice("the scene is written as its motion begins; the motion is left out");
+    }
     scene.notices.iter().for_each(|notice| report::notice(notice));
     let folder = args.output.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).map_err(|source| {

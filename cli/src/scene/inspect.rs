@@ -6,15 +6,44 @@ use crate::report;
 use crate::source::{self, Prepared};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use twinlight::scene::{Light, MaterialKind};
+use twinlight::scene::{Light, MaterialKind, Scene};
+
+/// Moving instances named, at most.
+const NAMED: usize = 4;
 
 /// Runs the command.
 ///
 /// # Errors
 /// Those of reading the scene.
 pub fn run(args: &InspectArgs) -> Result<(), Failure> {
-    let prepared = source::prepare(&args.scene, &args.load, None)?;
-    report::print(&if args.json { json_text(&args.scene, &prepared) } else { text(&args.scene, &prepared) })
+    let loaded = source::load(&args.scene, &args.load, None)?;
+    let prepared = loaded.at(0.0)?;
+    let motion = Motion::of(&loaded.scene);
+    let text = if args.json { json_text } else { text };
+    report::print(&text(&args.scene, &prepared, motion.as_ref()))
+}
+
+/// What moves.
+struct Motion {
+    seconds: f64,
+    /// Names of the instances.
+    moving: Vec<String>,
+}
+
+impl Motion {
+    fn of(scene: &Scene) -> Option<Self> {
+        let instances = scene.instances.iter().zip(scene.moving());
+        let moving =
+            instances.filter(|(_, moves)| *moves).map(|(instance, _)| instance.name.clone()).collect();
+        (!scene.motion.is_empty()).then_some(Self { seconds: scene.motion.duration, moving })
+    }
+
+    fn line(&self, instances: usize) -> String {
+        let named: Vec<&str> = self.moving.iter().take(NAMED).map(String::as_str).collect();
+        let more = if self.moving.len() > NAMED { ", …" } else { "" };
+        let count = self.moving.len();
+        format!("{:.3} s, {count} of {instances} instances: {}{more}", self.seconds, named.join(", "))
+    }
 }
 
 /// Kinds of light and how many there are of each.
@@ -43,7 +72,7 @@ fn kind_name(kind: MaterialKind) -> &'static str {
     }
 }
 
-fn text(name: &str, prepared: &Prepared) -> String {
+fn text(name: &str, prepared: &Prepared, motion: Option<&Motion>) -> String {
     let scene = &prepared.scene;
     let mut text = format!("{name}\n");
     // Writing to a string can't fail.
@@ -75,6 +104,9 @@ fn text(name: &str, prepared: &Prepared) -> String {
             c.vfov_degrees
         );
     }
+    if let Some(motion) = motion {
+        let _ = writeln!(text, "  motion      {}", motion.line(scene.instances.len()));
+    }
     let _ = writeln!(
         text,
         "  memory      {} compiled",
@@ -92,7 +124,7 @@ fn vector(v: [f64; 3]) -> String {
     format!("{},{},{}", v[0], v[1], v[2])
 }
 
-fn json_text(name: &str, prepared: &Prepared) -> String {
+fn json_text(name: &str, prepared: &Prepared, motion: Option<&Motion>) -> String {
     let scene = &prepared.scene;
     let meshes: Vec<Value> = scene
         .meshes
@@ -123,6 +155,7 @@ fn json_text(name: &str, prepared: &Prepared) -> String {
         "camera": scene.camera.map(|c| json!({
             "position": c.position, "target": c.target, "up": c.up, "vfov": c.vfov_degrees
         })),
+        "motion": motion.map(|m| json!({ "seconds": m.seconds, "moving": m.moving })),
         "bytes": source::compiled_bytes(&prepared.compiled),
         "notices": prepared.notices,
     });

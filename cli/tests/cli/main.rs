@@ -3,6 +3,7 @@
 mod compare;
 mod errors;
 mod help;
+mod motion;
 mod render;
 mod scene;
 mod signals;

@@ -2,6 +2,9 @@
 
 use glam::{DMat3, DVec3};
 
+/// Scale at which nothing is seen any more, 2⁻¹⁰⁰.
+const SPECK: f64 = 7.888_609_052_210_118e-31;
+
 /// An indexed triangle mesh in object space. Counter-clockwise triangles face the viewer.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
@@ -67,6 +70,15 @@ impl Transform {
     /// The image of a point.
     pub fn point(&self, p: [f32; 3]) -> DVec3 {
         self.linear * glam::Vec3::from(p).as_dvec3() + self.translation
+    }
+
+    /// This map, or where it takes all volume away (to less than 2⁻³⁰⁰ of it), one that makes an all but invisible point of
+    /// things: compiled scenes need maps with an inverse, and triangles keep their numbers.
+    pub fn or_point(self) -> Self {
+        if self.determinant().abs() < SPECK * SPECK * SPECK {
+            return Self::scale_translate(SPECK, self.translation);
+        }
+        self
     }
 
     /// Volume factor; negative when the map mirrors, 0 when it is singular.

@@ -7,6 +7,7 @@ mod environment;
 mod light;
 mod material;
 mod mesh;
+pub mod motion;
 mod triangle;
 mod validate;
 
@@ -22,6 +23,7 @@ pub use environment::Environment;
 pub use light::Light;
 pub use material::{Material, MaterialKind, Texture, Wrap};
 pub use mesh::{Instance, Mesh, Transform};
+pub use motion::Motion;
 pub use triangle::Triangle;
 pub use validate::{COORDINATE_LIMIT, Limits};
 
@@ -43,6 +45,9 @@ pub struct Scene {
     pub environment: Option<Environment>,
     /// Where the picture is taken from. Readers leave `None` when the file says nothing.
     pub camera: Option<Camera>,
+    /// What moves, and how. The rest of the scene is as the file places it, which need not be how it stands at any time:
+    /// [`Scene::at`] gives that.
+    pub motion: Motion,
     /// What a person should know about how the scene was read: ignored keys, dropped triangles, made-up defaults.
     pub notices: Vec<String>,
 }

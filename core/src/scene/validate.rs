@@ -67,6 +67,7 @@ impl Scene {
         for (i, l) in self.lights.iter().enumerate() {
             check_light(&format!("light {i}"), l)?;
         }
+        self.motion.check(self)?;
         self.environment.as_ref().map_or(Ok(()), check_environment)
     }
 }

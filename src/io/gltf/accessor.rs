@@ -72,6 +72,21 @@ impl<'a> Document<'a> {
         Ok(values)
     }
 
+    /// Four joints per vertex, indices into a skin's list.
+    pub fn joint_indices(&self, index: Index<Accessor>, path: &str) -> Result<Vec<[u32; 4]>> {
+        let (accessor, shape) = self.accessor(index, path, 4)?;
+        if !matches!(shape.component, ComponentType::U8 | ComponentType::U16) || accessor.normalized {
+            let what = format!("joints of type {:?}, not unsigned bytes or shorts", shape.component);
+            return Err(self.invalid(&format!("accessors[{}]", index.value()), what));
+        }
+        // 16 bits fit a float as they are.
+        Ok(self
+            .floats::<4>(index, path)?
+            .into_iter()
+            .map(|joints| joints.map(|joint| joint as u32))
+            .collect())
+    }
+
     fn accessor(
         &self,
         index: Index<Accessor>,
@@ -88,6 +103,7 @@ impl<'a> Document<'a> {
             Checked::Valid(Type::Vec2) => 2,
             Checked::Valid(Type::Vec3) => 3,
             Checked::Valid(Type::Vec4) => 4,
+            Checked::Valid(Type::Mat4) => 16,
             _ => 0,
         };
         if found != components {

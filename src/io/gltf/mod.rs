@@ -5,11 +5,12 @@
 //!
 //! What is read: the default scene's nodes, triangles of any mode, normals, one set of texture coordinates, metallic-rough
 //! materials (with emissive strength, ior, specular, transmission, texture transform), the first perspective camera,
-//! punctual lights. What the surface model has no place for is averaged or left out, with a notice. Skinned meshes appear in
-//! their bind pose: there every joint undoes its inverse bind matrix, so that vertices stay where the mesh has them and the
-//! node's transform plays no part.
+//! punctual lights; one animation of nodes, and skins, as a [`Motion`](twinlight_core::scene::Motion). What the surface model
+//! has no place for is averaged or left out, with a notice. Where nothing moves, skinned meshes are bent as their joints
+//! stand.
 
 mod accessor;
+mod animation;
 mod budget;
 mod buffer;
 mod camera;
@@ -19,6 +20,8 @@ mod material;
 mod mesh;
 mod node;
 mod notices;
+mod skeleton;
+mod skin;
 mod texture;
 
 use super::LoadOptions;
@@ -62,7 +65,6 @@ pub fn parse(bytes: &[u8], name: &str, files: &dyn Files, options: &LoadOptions)
     };
     document.check_extensions()?;
     let mut scene = node::read(&document)?;
-    document.note_ignored();
     scene.notices = document.notices.into_inner().into_messages();
     Ok(scene)
 }
@@ -109,11 +111,5 @@ impl Document<'_> {
             self.note("extensions ignored", extension);
         }
         Ok(())
-    }
-
-    fn note_ignored(&self) {
-        for (i, _) in self.root.animations.iter().enumerate() {
-            self.note("animations ignored", i.to_string());
-        }
     }
 }

@@ -1,9 +1,11 @@
 //! From the tables of a scene file to one scene.
 
+use super::adopt::{self, Follows, Placement};
 use super::document::{Document, InstanceTable, MeshTable};
 use super::held::Held;
+use super::nesting::Nesting;
 use super::source::Source;
-use super::{RenderSettings, light, material, place, view};
+use super::{RenderSettings, light, material, motion, place, view};
 use crate::io::resolve::{Files, refused};
 use crate::io::{LoadOptions, builtin, image, load, text};
 use std::collections::BTreeMap;
@@ -11,26 +13,14 @@ use toml::Spanned;
 use twinlight_core::scene::{Camera, Instance, Light, Scene, Transform};
 use twinlight_core::{Error, Result};
 
-/// Scene files inside scene files, at most.
-const MAX_DEPTH: usize = 8;
-/// Mesh files of one scene, those of nested scene files included: eight levels of a few references each could
-/// otherwise ask for billions.
-const MAX_MESH_FILES: u32 = 4096;
-/// Placements of one scene, for the same reason.
+/// Placements of one scene: scene files within each other could otherwise ask for billions.
 const MAX_INSTANCES: usize = 1 << 20;
-
-/// The scene files that are being read.
-#[derive(Default)]
-pub(super) struct Nesting {
-    /// Identities of the open scene files, outermost first.
-    open: Vec<String>,
-    /// Mesh files read so far.
-    mesh_files: u32,
-}
 
 /// What a mesh file contributes wherever it is placed. Indices are those of the whole scene.
 struct Part {
     instances: Vec<Instance>,
+    /// What each instance follows.
+    follows: Vec<Option<Follows>>,
     lights: Vec<Light>,
     camera: Option<Camera>,
     placed: bool,
@@ -46,7 +36,7 @@ pub(super) fn scene(
 ) -> Result<(Scene, RenderSettings)> {
     let source = Source::new(bytes, name)?;
     let document = source.document()?;
-    nesting.open.push(files.identity(name).unwrap_or_else(|_| name.to_owned()));
+    nesting.enter(files.identity(name).unwrap_or_else(|_| name.to_owned()));
     let mut builder = Builder {
         source,
         files,
@@ -59,7 +49,7 @@ pub(super) fn scene(
         held: Held::default(),
     };
     builder.fill(&document, nesting)?;
-    nesting.open.pop();
+    nesting.leave();
     let render = document.render;
     let settings = RenderSettings {
         size: render.size,
@@ -97,7 +87,8 @@ impl Builder<'_> {
         }
         for i in 0..self.parts.len() {
             if !self.parts[i].placed {
-                self.place(i, &Transform::IDENTITY, None, &(0..0))?;
+                let placement = Placement { transform: Transform::IDENTITY, track: None };
+                self.place(i, &placement, None, &(0..0))?;
             }
         }
         for table in &document.light {
@@ -154,12 +145,12 @@ impl Builder<'_> {
             let what = format!("mesh '{}' is there twice; give each a name of its own", shown(name));
             return Err(self.source.error(&name.span(), what));
         }
-        nesting.mesh_files += 1;
-        if nesting.mesh_files > MAX_MESH_FILES {
-            let count = nesting.mesh_files.into();
-            return Err(Error::limit("mesh files of the scene", count, MAX_MESH_FILES.into()));
+        nesting.count_mesh_file()?;
+        let own = self.load(table, nesting)?;
+        if let Some(animation) = table.animation.as_ref().filter(|_| own.motion.is_empty()) {
+            let what = format!("'{}' has no animation that could be played", shown(&table.path));
+            return Err(self.source.error(&animation.span(), what));
         }
-        let own = self.load(&table.path, nesting)?;
         let material = table.material.as_ref().map(|m| self.material_index(m)).transpose()?;
         let part = self.absorb(own, name.get_ref(), material)?;
         self.part_by_name.insert(name.get_ref().clone(), self.parts.len());
@@ -167,7 +158,10 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn load(&self, path: &Spanned<String>, nesting: &mut Nesting) -> Result<Scene> {
+    fn load(&self, table: &MeshTable, nesting: &mut Nesting) -> Result<Scene> {
+        let path = &table.path;
+        let mut options = self.remaining();
+        options.animation = table.animation.as_ref().map(|a| a.get_ref().clone()).or(options.animation);
         let (text, place) = (path.get_ref(), self.source.place(&path.span()));
         if let Some(name) = text.strip_prefix(builtin::PREFIX) {
             return builtin::load(name).map_err(|e| refused(e, &place, "mesh", text));
@@ -178,10 +172,10 @@ impl Builder<'_> {
         let bytes = self.files.read_path(text).map_err(refuse)?;
         let files = self.files.beside(text).map_err(refuse)?;
         let load::Reader::Scene(parse) = reader else {
-            self.check_nesting(text, &place, nesting)?;
-            return scene(&bytes, name, files.as_ref(), &self.remaining(), nesting).map(|(scene, _)| scene);
+            nesting.check(&self.files.identity(text)?, text, &place)?;
+            return scene(&bytes, name, files.as_ref(), &options, nesting).map(|(scene, _)| scene);
         };
-        parse(&bytes, name, files.as_ref(), &self.remaining())
+        parse(&bytes, name, files.as_ref(), &options)
     }
 
     /// The options less what the scene holds already.
@@ -190,22 +184,6 @@ impl Builder<'_> {
         options.limits.max_triangles = options.limits.max_triangles.saturating_sub(self.held.triangles);
         options.limits.max_bytes = options.limits.max_bytes.saturating_sub(self.held.bytes);
         options
-    }
-
-    fn check_nesting(&self, path: &str, place: &str, nesting: &Nesting) -> Result<()> {
-        let identity = self.files.identity(path)?;
-        if nesting.open.contains(&identity) {
-            return Err(Error::invalid(place, format!("'{path}' includes itself")));
-        }
-        if nesting.open.len() >= MAX_DEPTH {
-            let depth = nesting.open.len() as u64 + 1;
-            return Err(Error::limit(
-                format!("{place}: scene files inside each other"),
-                depth,
-                MAX_DEPTH as u64,
-            ));
-        }
-        Ok(())
     }
 
     /// Takes over what another file describes.
@@ -235,13 +213,14 @@ impl Builder<'_> {
                 .notices
                 .push(format!("the environment of '{name}' is left out: only a scene's own counts"));
         }
-        let adopt = |i: Instance| Instance {
+        let follows = adopt::adopt(&mut self.scene.motion, own.motion, meshes, own.instances.len());
+        let adopted = |i: Instance| Instance {
             mesh: i.mesh + meshes,
             material: material.or(i.material.map(|m| m + materials)),
             ..i
         };
-        let instances = own.instances.into_iter().map(adopt).collect();
-        Ok(Part { instances, lights: own.lights, camera: own.camera, placed: false })
+        let instances = own.instances.into_iter().map(adopted).collect();
+        Ok(Part { instances, follows, lights: own.lights, camera: own.camera, placed: false })
     }
 
     fn instance(&mut self, table: &InstanceTable) -> Result<()> {
@@ -251,15 +230,27 @@ impl Builder<'_> {
             let what = format!("no mesh is called '{}'{hint}", shown(&table.mesh));
             return Err(self.source.error(&table.mesh.span(), what));
         };
-        let transform = place::transform(table, &self.source)?;
+        let mut transform = place::transform(table, &self.source)?;
+        let moving = motion::moving(table, &self.source, self.remaining().limits.max_bytes)?;
+        if let Some(moving) = &moving {
+            transform = moving.track.at(0.0).or_point();
+            self.held.bytes += moving.bytes;
+            self.scene.motion.duration = self.scene.motion.duration.max(moving.duration);
+            if !self.parts[part].lights.is_empty() || self.parts[part].camera.is_some() {
+                let name = shown(&table.mesh);
+                let notice = format!("lights and cameras of '{name}' stay where its motion begins");
+                self.scene.notices.push(notice);
+            }
+        }
         let material = table.material.as_ref().map(|m| self.material_index(m)).transpose()?;
-        self.place(part, &transform, material, &table.mesh.span())
+        let placement = Placement { transform, track: moving.as_ref().map(|moving| &moving.track) };
+        self.place(part, &placement, material, &table.mesh.span())
     }
 
     fn place(
         &mut self,
         part: usize,
-        transform: &Transform,
+        placement: &Placement<'_>,
         material: Option<u32>,
         at: &std::ops::Range<usize>,
     ) -> Result<()> {
@@ -269,7 +260,16 @@ impl Builder<'_> {
         if count > MAX_INSTANCES {
             return Err(Error::limit("instances of the scene", count as u64, MAX_INSTANCES as u64));
         }
-        for instance in &part.instances {
+        let transform = &placement.transform;
+        let motion = &mut self.scene.motion;
+        let node = placement.node(motion, part.follows.iter().any(Option::is_some));
+        for (instance, follows) in part.instances.iter().zip(&part.follows) {
+            motion.bindings.extend(placement.bind(
+                self.scene.instances.len(),
+                instance,
+                follows.as_ref(),
+                node,
+            ));
             self.scene.instances.push(Instance {
                 transform: transform.then_inner(&instance.transform),
                 material: material.or(instance.material),

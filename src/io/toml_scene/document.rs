@@ -142,6 +142,9 @@ pub(super) struct MeshTable {
     /// Replaces the materials of the file.
     #[schemars(with = "Option<String>")]
     pub material: Option<Spanned<String>>,
+    /// Which animation of a glTF file is played, by name or number from 0; the caller's choice by default, else the first.
+    #[schemars(with = "Option<String>")]
+    pub animation: Option<Spanned<String>>,
 }
 
 /// A rotation about an axis.
@@ -152,6 +155,21 @@ pub(super) struct AxisAngle {
     pub axis: [f64; 3],
     /// Angle, degrees, right-handed.
     pub angle: f64,
+}
+
+/// A keyframe of a placement. Between keyframes, translation and scale run on straight lines, and rotations about the same
+/// axis through the angles between theirs; others take the shortest turn.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KeyframeTable {
+    /// Seconds, at least 0; later than the keyframe before.
+    pub time: f64,
+    /// Translation.
+    pub translate: Option<[f64; 3]>,
+    /// Rotation about an axis.
+    pub rotate: Option<AxisAngle>,
+    /// Scale, one factor or one per axis.
+    pub scale: Option<OneOrThree>,
 }
 
 /// A placement of a mesh: scaled, then rotated, then moved; or by a matrix.
@@ -176,6 +194,10 @@ pub(super) struct InstanceTable {
     /// Replaces the materials of the mesh.
     #[schemars(with = "Option<String>")]
     pub material: Option<Spanned<String>>,
+    /// Keyframes that move it; what none of them gives stays as above.
+    #[schemars(with = "Vec<KeyframeTable>")]
+    #[serde(default)]
+    pub motion: Vec<Spanned<KeyframeTable>>,
 }
 
 /// The kinds of light.

@@ -18,5 +18,6 @@ impl Held {
             self.bytes += 16 * mesh.triangles.len() as u64 + 32 * mesh.positions.len() as u64;
         }
         self.bytes += scene.textures.iter().map(|t| 4 * t.texels.len() as u64).sum::<u64>();
+        self.bytes += scene.motion.bytes();
     }
 }

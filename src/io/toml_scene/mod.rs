@@ -26,13 +26,32 @@
 //! radiance = 10
 //! ```
 //!
+//! An instance with keyframes moves, in straight lines and turns between them:
+//!
+//! ```toml
+//! [[instance]]
+//! mesh = "dragon"
+//! scale = 0.1
+//!
+//! [[instance.motion]]
+//! time = 0
+//! rotate = { axis = [0, 1, 0], angle = 0 }
+//!
+//! [[instance.motion]]
+//! time = 4
+//! rotate = { axis = [0, 1, 0], angle = 360 }
+//! ```
+//!
 //! All tables and keys are in the JSON Schema ([`json_schema`]), which editors use for completion.
 
+mod adopt;
 mod build;
 mod document;
 mod held;
 mod light;
 mod material;
+mod motion;
+mod nesting;
 mod place;
 mod source;
 mod value;
@@ -77,7 +96,7 @@ pub fn parse_with_settings(
     files: &dyn Files,
     options: &LoadOptions,
 ) -> Result<(Scene, RenderSettings)> {
-    build::scene(bytes, name, files, options, &mut build::Nesting::default())
+    build::scene(bytes, name, files, options, &mut nesting::Nesting::default())
 }
 
 /// The JSON Schema of scene files.

@@ -36,7 +36,8 @@ pub(super) fn transform(table: &InstanceTable, source: &Source<'_>) -> Result<Tr
     Ok(transform)
 }
 
-fn rotation(table: &InstanceTable, source: &Source<'_>) -> Result<DMat3> {
+/// The rotation that an instance table describes.
+pub(super) fn rotation(table: &InstanceTable, source: &Source<'_>) -> Result<DMat3> {
     match (&table.rotate, table.euler) {
         (Some(rotate), Some(_)) => Err(source.error(&rotate.span(), "rotate and euler exclude each other")),
         (Some(rotate), None) => {

@@ -1,0 +1,93 @@
+//! What pictures share: the device, the flags, what was said already.
+
+use super::job::Job;
+use super::layers::Pictures;
+use super::moment::Moment;
+use super::output::Outputs;
+use super::progress;
+use super::run::{self, Done};
+use super::sidecar;
+use crate::args::{ModeName, RenderArgs};
+use crate::device::{self, Device};
+use crate::exit::Failure;
+use crate::interrupt::Interrupt;
+use crate::report;
+use crate::source::Prepared;
+use std::collections::BTreeSet;
+use std::time::Instant;
+use twinlight::methods::post::tonemap::Display;
+
+/// A place to render in.
+pub struct Studio<'a> {
+    args: &'a RenderArgs,
+    tone: Display,
+    device: Device,
+    /// Asks for a stop.
+    pub interrupt: Interrupt,
+    /// Every notice so far, without its numbers: what is said of one frame need not be said of the next.
+    said: BTreeSet<String>,
+    /// Those about the device, which are about every picture.
+    about_device: Vec<String>,
+}
+
+impl<'a> Studio<'a> {
+    /// Opens the device.
+    ///
+    /// # Errors
+    /// Those of [`device::open`].
+    pub fn open(args: &'a RenderArgs, tone: Display, interrupt: Interrupt) -> Result<Self, Failure> {
+        let (device, unavailable) = device::open(&args.backend, args.mode, args.threads)?;
+        let mut about_device: Vec<String> = unavailable.into_iter().collect();
+        if args.mode == Some(ModeName::Portable) && matches!(device, Device::Cpu(_)) {
+            let notice =
+                "--mode portable is for GPUs: the CPU, which renders this, always computes as in strict mode";
+            about_device.push(notice.into());
+        }
+        Ok(Self { args, tone, device, interrupt, said: BTreeSet::new(), about_device })
+    }
+
+    /// Renders a picture; also gives the notices that are about it.
+    ///
+    /// # Errors
+    /// What the backend and the method refuse.
+    pub fn render(
+        &mut self,
+        prepared: &Prepared,
+        job: &Job,
+        display: &mut progress::Display,
+    ) -> Result<(Done, Vec<String>), Failure> {
+        let mut notices = Vec::new();
+        let said = &mut self.said;
+        let mut tell = |text: String| {
+            if said.insert(text.replace(|c: char| c.is_ascii_digit(), "")) {
+                report::notice(&text);
+            }
+            notices.push(text);
+        };
+        prepared.notices.iter().chain(&self.about_device).cloned().for_each(&mut tell);
+        let done = run::render(&self.device, self.args, prepared, job, &self.interrupt, display, &mut tell)?;
+        Ok((done, notices))
+    }
+
+    /// Writes a picture's files; `start` is when work on it began.
+    ///
+    /// # Errors
+    /// [`twinlight::Error::Io`].
+    pub fn save(
+        &self,
+        prepared: &Prepared,
+        job: &Job,
+        (done, notices): &(Done, Vec<String>),
+        moment: Option<Moment>,
+        outputs: &Outputs,
+        start: Instant,
+    ) -> Result<(), Failure> {
+        let write_start = Instant::now();
+        let pictures = Pictures::new(&done.taken.film, done.gbuffer.as_deref(), self.tone)?;
+        outputs.write(&pictures, &sidecar::attributes(self.args, job, done, moment))?;
+        let times = sidecar::Times { write: write_start.elapsed(), total: start.elapsed() };
+        let text = sidecar::json(self.args, prepared, job, done, moment, outputs, notices, &times);
+        outputs.write_sidecar(&text)?;
+        report::print(&outputs.list())
+    }
+}
