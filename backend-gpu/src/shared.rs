@@ -28,6 +28,8 @@ shared! {
     HASH = "hash";
     /// Twin of `transport::intersect`.
     INTERSECT = "intersect";
+    /// Twin of `lattice`, and the bindings of meshes and views.
+    LATTICE = "lattice";
     /// Twin of `transport::light`; wants `params.environment`.
     LIGHT = "light";
     /// Twin of `transport::offset`.
@@ -46,4 +48,6 @@ shared! {
     TRIG = "trig";
     /// Twin of `math::vector`.
     VECTOR = "vector";
+    /// 64-bit integers, which Rust has and WGSL hasn't.
+    WIDE = "wide";
 }
