@@ -11,6 +11,7 @@ use twinlight_core::lattice::LatticeMesh;
 pub struct GpuMesh {
     vertices: GpuBuffer<[u32; 2]>,
     triangles: GpuBuffer<[u32; 3]>,
+    vertex_count: u32,
     triangle_count: u32,
 }
 
@@ -25,8 +26,14 @@ impl GpuMesh {
         Ok(Self {
             vertices: upload(device, "vertices", &vertices)?,
             triangles: upload(device, "triangles", mesh.triangles())?,
+            vertex_count: vertices.len() as u32,
             triangle_count: mesh.triangles().len() as u32,
         })
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> u32 {
+        self.vertex_count
     }
 
     /// Number of triangles.
@@ -34,8 +41,12 @@ impl GpuMesh {
         self.triangle_count
     }
 
-    pub(crate) fn buffers(&self) -> [(&'static str, BufferRef<'_>); 2] {
-        [("vertices", self.vertices.binding()), ("triangles", self.triangles.binding())]
+    pub(crate) fn vertices(&self) -> BufferRef<'_> {
+        self.vertices.binding()
+    }
+
+    pub(crate) fn triangles(&self) -> BufferRef<'_> {
+        self.triangles.binding()
     }
 }
 

@@ -65,6 +65,10 @@ pub struct RasterizeLhbBlock {
     pub triangle_count: u32,
     /// Pairs of a triangle and a view.
     pub pair_count: u32,
+    /// Views of the dispatch.
+    pub view_count: u32,
+    /// Vertices of the mesh.
+    pub vertex_count: u32,
     /// First item of the dispatch, of all those of the pairs.
     pub item_begin: u32,
     /// The item after the last.
@@ -81,6 +85,8 @@ pub struct RasterizeLhbBlock {
     pub tile_count: u32,
     /// For `loops_run`.
     pub loop_rounds: u32,
+    /// Unused, 0.
+    pub padding: [u32; 2],
 }
 
 /// A tile of a list that isn't short; twin of the WGSL struct.

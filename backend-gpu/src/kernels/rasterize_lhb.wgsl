@@ -18,6 +18,9 @@ const PATH_SPANS: u32 = 4u;
 
 // Pixels of the bounds up to which a pair is no more than one invocation's work.
 const MICRO_PIXELS: u32 = 32u;
+// Pixels of the bounds up to which running over them is cheaper than finding the spans of every row: measured on the
+// software adapters.
+const LINEAR_PIXELS: u32 = 256u;
 // Pixels of an item, except of the path by spans, where an item is a row.
 const ITEM_PIXELS: u32 = 128u;
 // Pixels along the side of a block, and in a row of an item of blocks.
@@ -38,6 +41,9 @@ struct RasterizeLhbBlock {
     triangle_begin: u32,
     triangle_count: u32,
     pair_count: u32,
+    view_count: u32,
+    // Of the mesh.
+    vertex_count: u32,
     // The items of the dispatch, of all those of the pairs.
     item_begin: u32,
     item_end: u32,
@@ -53,6 +59,7 @@ struct RasterizeLhbBlock {
     tile_count: u32,
     // For loops_run.
     loop_rounds: u32,
+    padding: vec2<u32>,
 }
 
 struct LhbElement {
@@ -61,6 +68,8 @@ struct LhbElement {
 }
 
 @group(0) @binding(0) var<uniform> params: RasterizeLhbBlock;
+// The vertices in the views of the dispatch: x and y in the halves of the first word, x in the low one; z in the second.
+@group(0) @binding(15) var<storage, read_write> projected: array<vec2<u32>>;
 // Items of every pair.
 @group(0) @binding(4) var<storage, read_write> items: array<u32>;
 // The scan of the items of every pair, or of the elements that the cap keeps of every list.
@@ -87,8 +96,8 @@ fn last_start(value: u32, count: u32) -> u32 {
 }
 
 fn outline_of_pair(pair: u32) -> Outline {
-    let view = params.view_begin + pair / params.triangle_count;
-    return setup(view, params.triangle_begin + pair % params.triangle_count);
+    let view = pair / params.triangle_count;
+    return setup(view, params.triangle_begin + pair - view * params.triangle_count);
 }
 
 // The path of a pair whose bounds hold `pixels` pixels.
@@ -96,7 +105,10 @@ fn path_of(pixels: u32) -> u32 {
     if params.call.path != PATH_AUTO {
         return params.call.path;
     }
-    return select(PATH_BLOCKS, PATH_MICRO, pixels <= MICRO_PIXELS);
+    if pixels <= MICRO_PIXELS {
+        return PATH_MICRO;
+    }
+    return select(PATH_SPANS, PATH_LINEAR, pixels <= LINEAR_PIXELS);
 }
 
 // How many items a pair is cut into; 0 where it is not cut.
@@ -157,7 +169,24 @@ fn touch_where_covered(pen: Pen, at: vec3<i32>, column: u32, row: u32) {
     }
 }
 
-// [1] count: one round over the triangles, without depths, counts the elements of every list; [3] is the other.
+// [1] count: vertices are projected once per view; then one round over the triangles, without depths, counts the
+// elements of every list. [3] is the other round.
+@compute @workgroup_size(256)
+fn project_vertices(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let index = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
+    if index >= params.view_count * params.vertex_count {
+        return;
+    }
+    let view = index / params.vertex_count;
+    let vertex = index - view * params.vertex_count;
+    let p = project(views[params.view_begin + view], position_of(vertex), params.call.size);
+    projected[index] = vec2<u32>(u32(p.x) | (u32(p.y) << 16u), u32(p.z));
+}
+
 @compute @workgroup_size(256)
 fn raster_pairs(
     @builtin(workgroup_id) workgroup: vec3<u32>,

@@ -1,4 +1,4 @@
-// Twin of `lattice`: views and meshes in integers, and their bindings.
+// Twin of `lattice`: views and meshes in integers, and the bindings of them.
 
 const DEPTH_ORIGIN: u32 = 536870912u;
 

@@ -1,8 +1,10 @@
 //! Layered hit buffers against a reference that tests every pixel of every triangle in 64 and 128 bits.
 
 use crate::{Check, Target, expect_same, numbers};
+use bytemuck::Zeroable;
 use glam::DVec3;
 use libtest_mimic::Failed;
+use twinlight_backend_gpu::kernels::rasterize_lhb::{ListSums, RasterizeLhbBlock, SOURCE};
 use twinlight_backend_gpu::{DeviceOptions, GpuBackend, GpuDevice};
 use twinlight_core::kernels::rasterize_lhb::{
     CAP_FAR, CAP_NEAR, LhbElement, PATH_AUTO, PATH_MICRO, PATH_SPANS, RasterizeLhbParams,
@@ -17,6 +19,7 @@ pub const CHECKS: &[(&str, Check)] = &[
     ("lhb: caps keep the nearest and the farthest", caps),
     ("lhb: a hundred thousand layers", layers),
     ("lhb: lists around the lengths that change how they are sorted", lengths),
+    ("lhb: sums of layers don't wrap", sums),
     ("d3: layered hit buffers in batches, or beyond a binding", small_bindings),
 ];
 
@@ -252,6 +255,23 @@ fn lengths(target: &Target) -> Result<(), Failed> {
         expect_lists(&gpu, &stack(count), &[view], 1, PATH_AUTO..=PATH_AUTO)?;
     }
     Ok(())
+}
+
+/// More layers than a test can draw: 2³² and more are told from few by the sums alone, because offsets wrap.
+fn sums(target: &Target) -> Result<(), Failed> {
+    let device = target.device()?;
+    let mut counts = vec![u32::MAX >> 1; 5000];
+    counts[4321] = u32::MAX;
+    let params = RasterizeLhbBlock { list_count: counts.len() as u32, ..RasterizeLhbBlock::zeroed() };
+    let (counts, sums) = (device.upload(&counts)?, device.zeroed::<ListSums>(2)?);
+    let mut recorder = device.record("sum up layers");
+    let buffers = [("counts", counts.binding()), ("list_sums", sums.binding())];
+    recorder.dispatch("sum lists", &device.pipeline(&SOURCE, "sum_lists")?, &params, &buffers, 2)?;
+    recorder.run()?;
+    let sums = device.download(&sums)?;
+    let total: u64 = sums.iter().map(|s| u64::from(s.elements_high) << 32 | u64::from(s.elements_low)).sum();
+    expect_same("sum", &[total], &[4999 * 0x7fff_ffff + 0xffff_ffff])?;
+    expect_same("longest", &[sums[0].longest, sums[1].longest], &[u32::MAX >> 1, u32::MAX])
 }
 
 /// Bindings of 16 KiB: pairs come in batches, lists and elements beyond are refused.

@@ -17,6 +17,9 @@ use twinlight_core::lattice::View;
 /// their number is a word.
 const MAX_PAIRS: usize = 1 << 18;
 
+/// Projected vertices per batch, 32 MiB, unless one view has more.
+const MAX_PROJECTED: usize = 1 << 22;
+
 /// Items per submission, of at most 2¹⁰ pixels each: a submission that takes seconds looks like a device that hangs.
 const MAX_ITEMS: u32 = 1 << 18;
 
@@ -25,6 +28,9 @@ pub(super) struct Cover<'a> {
     device: &'a GpuDevice,
     mesh: &'a GpuMesh,
     views: GpuBuffer<View>,
+    /// The vertices in the views of a batch.
+    projected: GpuBuffer<[u32; 2]>,
+    project_vertices: Arc<Pipeline>,
     raster_pairs: Arc<Pipeline>,
     raster_items: Arc<Pipeline>,
     batches: Vec<Batch>,
@@ -50,11 +56,24 @@ impl<'a> Cover<'a> {
         params: &RasterizeLhbParams,
         counts: &GpuBuffer<u32>,
     ) -> Result<Self> {
-        let most = device.elements_per_binding(size_of::<u32>()).clamp(1, MAX_PAIRS);
+        let zero = RasterizeLhbBlock::zeroed();
+        let call = RasterizeLhbBlock {
+            call: *params,
+            view_count: views.len() as u32,
+            triangle_count: mesh.triangle_count(),
+            vertex_count: mesh.vertex_count(),
+            ..zero
+        };
+        let most_pairs = device.elements_per_binding(size_of::<u32>()).clamp(1, MAX_PAIRS);
+        let most_projected = device.elements_per_binding(size_of::<[u32; 2]>()).min(MAX_PROJECTED);
+        let batches: Vec<_> = batches(&call, most_pairs as u32, most_projected as u32).collect();
+        let projected = batches.iter().map(|batch| batch.view_count * batch.vertex_count).max();
         let mut cover = Self {
             device,
             mesh,
             views: upload(device, "views", views)?,
+            projected: device.zeroed(projected.unwrap_or(0) as usize)?,
+            project_vertices: device.pipeline(&SOURCE, "project_vertices")?,
             raster_pairs: device.pipeline(&SOURCE, "raster_pairs")?,
             raster_items: device.pipeline(&SOURCE, "raster_items")?,
             batches: Vec::new(),
@@ -65,7 +84,7 @@ impl<'a> Cover<'a> {
             ("offsets", no_offsets.binding()),
             ("elements", no_elements.binding()),
         ];
-        for params in batches(views.len() as u32, mesh.triangle_count(), params, most as u32) {
+        for params in batches {
             let items = device.zeroed::<u32>(params.pair_count as usize)?;
             cover.pairs(&params, &items, outputs)?;
             let mut starts = device.zeroed::<u32>(params.pair_count as usize)?;
@@ -100,6 +119,15 @@ impl<'a> Cover<'a> {
 
     fn pairs(&self, params: &RasterizeLhbBlock, items: &GpuBuffer<u32>, outputs: Outputs<'_>) -> Result<()> {
         let mut recorder = self.device.record("rasterize small triangles");
+        if params.triangle_begin == 0 {
+            let buffers = [
+                ("views", self.views.binding()),
+                ("vertices", self.mesh.vertices()),
+                ("projected", self.projected.binding()),
+            ];
+            let workgroups = (params.view_count * params.vertex_count).div_ceil(WORKGROUP_SIZE);
+            recorder.dispatch("project vertices", &self.project_vertices, params, &buffers, workgroups)?;
+        }
         let buffers = [&self.inputs()[..], &outputs, &[("items", items.binding())]].concat();
         let workgroups = params.pair_count.div_ceil(WORKGROUP_SIZE);
         recorder.dispatch("rasterize pairs", &self.raster_pairs, params, &buffers, workgroups)?;
@@ -119,29 +147,27 @@ impl<'a> Cover<'a> {
         Ok(())
     }
 
-    fn inputs(&self) -> [(&'static str, BufferRef<'_>); 3] {
-        let [vertices, triangles] = self.mesh.buffers();
-        [("views", self.views.binding()), vertices, triangles]
+    fn inputs(&self) -> [(&'static str, BufferRef<'_>); 2] {
+        [("projected", self.projected.binding()), ("triangles", self.mesh.triangles())]
     }
 }
 
-/// The pairs of `triangles` triangles and `views` views in batches of at most `most`.
+/// The pairs of the triangles and views of `call` in batches of at most `most_pairs`, view after view; and of at most
+/// `most_projected` projected vertices where that is one view or more.
 fn batches(
-    views: u32,
-    triangles: u32,
-    call: &RasterizeLhbParams,
-    most: u32,
+    call: &RasterizeLhbBlock,
+    most_pairs: u32,
+    most_projected: u32,
 ) -> impl Iterator<Item = RasterizeLhbBlock> {
     let call = *call;
-    let per_view = triangles.min(most).max(1);
-    let view_step = most / per_view;
-    (0..views).step_by(view_step as usize).flat_map(move |view_begin| {
-        let view_count = view_step.min(views - view_begin);
-        (0..triangles).step_by(per_view as usize).map(move |triangle_begin| {
-            let triangle_count = per_view.min(triangles - triangle_begin);
+    let per_view = call.triangle_count.min(most_pairs).max(1);
+    let view_step = (most_pairs / per_view).min(most_projected / call.vertex_count.max(1)).max(1);
+    (0..call.view_count).step_by(view_step as usize).flat_map(move |view_begin| {
+        let view_count = view_step.min(call.view_count - view_begin);
+        (0..call.triangle_count).step_by(per_view as usize).map(move |triangle_begin| {
+            let triangle_count = per_view.min(call.triangle_count - triangle_begin);
             let pair_count = view_count * triangle_count;
-            let zero = RasterizeLhbBlock::zeroed();
-            RasterizeLhbBlock { call, view_begin, triangle_begin, triangle_count, pair_count, ..zero }
+            RasterizeLhbBlock { view_begin, view_count, triangle_begin, triangle_count, pair_count, ..call }
         })
     })
 }
@@ -152,19 +178,25 @@ mod tests {
 
     #[test]
     fn batches_hold_every_pair_once() {
-        for (views, triangles, most) in
-            [(0, 5, 4), (3, 0, 4), (1, 1, 1), (7, 3, 10), (3, 10, 7), (5, 4, 4), (2, 9, 1)]
+        for (view_count, triangle_count, most) in
+            [(0, 5, 4), (3, 0, 4), (1, 1, 1), (7, 3, 10), (3, 10, 7), (5, 4, 4), (2, 9, 1), (9, 2, 100)]
         {
-            let mut seen = vec![0; (views * triangles) as usize];
-            for batch in batches(views, triangles, &RasterizeLhbParams::new(8), most) {
-                assert!(batch.pair_count <= most);
+            let call = RasterizeLhbBlock {
+                view_count,
+                triangle_count,
+                vertex_count: 5,
+                ..RasterizeLhbBlock::zeroed()
+            };
+            let mut seen = vec![0; (view_count * triangle_count) as usize];
+            for batch in batches(&call, most, 17) {
+                assert!(batch.pair_count <= most && batch.view_count <= 3);
                 for pair in 0..batch.pair_count {
                     let view = batch.view_begin + pair / batch.triangle_count;
                     let triangle = batch.triangle_begin + pair % batch.triangle_count;
-                    seen[(view * triangles + triangle) as usize] += 1;
+                    seen[(view * triangle_count + triangle) as usize] += 1;
                 }
             }
-            assert!(seen.iter().all(|&times| times == 1), "{views} {triangles} {most}: {seen:?}");
+            assert!(seen.iter().all(|&times| times == 1), "{view_count} {triangle_count} {most}: {seen:?}");
         }
     }
 }

@@ -1,10 +1,12 @@
 // What one triangle covers of one view, and how deep it lies there.
 
 struct Outline {
-    // The projected vertices, in the order in which the area is positive.
-    p0: vec3<i32>,
-    p1: vec3<i32>,
-    p2: vec3<i32>,
+    // The vertices on the screen, in the order in which the area is positive.
+    p0: vec2<i32>,
+    p1: vec2<i32>,
+    p2: vec2<i32>,
+    // Where they are among the projected ones, which have z too: that is read only for depths.
+    places: vec3<u32>,
     // Twice the area, A of the contract.
     area: i32,
     surface: u32,
@@ -34,29 +36,38 @@ struct Plane {
     high: i32,
 }
 
+fn screen_position(place: u32) -> vec2<i32> {
+    let word = projected[place].x;
+    return vec2<i32>(vec2<u32>(word & 0xffffu, word >> 16u));
+}
+
+// `view` counts from the first of the dispatch.
 fn setup(view: u32, triangle: u32) -> Outline {
-    let size = params.call.size;
-    let p0 = project(views[view], position_of(triangles[3u * triangle]), size);
-    var p1 = project(views[view], position_of(triangles[3u * triangle + 1u]), size);
-    var p2 = project(views[view], position_of(triangles[3u * triangle + 2u]), size);
+    let corners = vec3<u32>(triangles[3u * triangle], triangles[3u * triangle + 1u], triangles[3u * triangle + 2u]);
+    var places = vec3<u32>(view * params.vertex_count) + corners;
+    let p0 = screen_position(places.x);
+    var p1 = screen_position(places.y);
+    var p2 = screen_position(places.z);
     var area = (p1.x - p0.x) * (p2.y - p0.y) - (p1.y - p0.y) * (p2.x - p0.x);
     let front = area < 0;
     if front {
         let other = p1;
         p1 = p2;
         p2 = other;
+        places = places.xzy;
         area = -area;
     }
-    let bits = subpixel_bits(size);
+    let bits = subpixel_bits(params.call.size);
     let half = 1i << (bits - 1u);
-    let first = (min(p0.xy, min(p1.xy, p2.xy)) + vec2<i32>(half - 1)) >> vec2<u32>(bits);
-    let last = (max(p0.xy, max(p1.xy, p2.xy)) - vec2<i32>(half)) >> vec2<u32>(bits);
+    let first = (min(p0, min(p1, p2)) + vec2<i32>(half - 1)) >> vec2<u32>(bits);
+    let last = (max(p0, max(p1, p2)) - vec2<i32>(half)) >> vec2<u32>(bits);
     var extent = vec2<u32>();
     if area != 0 && all(first <= last) {
         extent = vec2<u32>(last - first) + vec2<u32>(1u);
     }
     let surface = 2u * triangle + select(0u, 1u, front);
-    return Outline(p0, p1, p2, area, surface, view * size * size, first, extent);
+    let list = (params.view_begin + view) * params.call.size * params.call.size;
+    return Outline(p0, p1, p2, places, area, surface, list, first, extent);
 }
 
 // The centre of the first pixel of the bounds.
@@ -90,18 +101,23 @@ fn covers(at: vec3<i32>) -> bool {
 fn plane_of(outline: Outline) -> Plane {
     let a = outline.p1 - outline.p0;
     let b = outline.p2 - outline.p0;
-    let normal_x = wide_sub(wide_mul(a.z, b.y), wide_mul(b.z, a.y));
-    let normal_y = wide_sub(wide_mul(b.z, a.x), wide_mul(a.z, b.x));
-    let reach = first_centre(outline) - outline.p0.xy;
+    let z = vec3<i32>(
+        i32(projected[outline.places.x].y),
+        i32(projected[outline.places.y].y),
+        i32(projected[outline.places.z].y),
+    );
+    let normal_x = wide_sub(wide_mul(z.y - z.x, b.y), wide_mul(z.z - z.x, a.y));
+    let normal_y = wide_sub(wide_mul(z.z - z.x, a.x), wide_mul(z.y - z.x, b.x));
+    let reach = first_centre(outline) - outline.p0;
     let there = wide_add(wide_scale(normal_x, reach.x), wide_scale(normal_y, reach.y));
     let bits = subpixel_bits(params.call.size);
     let area = u32(outline.area);
     return Plane(
-        u32(outline.p0.z) + divide_rounded(there, area),
+        u32(z.x) + divide_rounded(there, area),
         divide_rounded(wide_shift_left(normal_x, bits), area),
         divide_rounded(wide_shift_left(normal_y, bits), area),
-        min(outline.p0.z, min(outline.p1.z, outline.p2.z)),
-        max(outline.p0.z, max(outline.p1.z, outline.p2.z)),
+        min(z.x, min(z.y, z.z)),
+        max(z.x, max(z.y, z.z)),
     );
 }
 
