@@ -7,7 +7,7 @@ use libtest_mimic::Failed;
 use twinlight_backend_gpu::kernels::rasterize_lhb::{ListSums, RasterizeLhbBlock, SOURCE};
 use twinlight_backend_gpu::{DeviceOptions, GpuBackend, GpuDevice};
 use twinlight_core::kernels::rasterize_lhb::{
-    CAP_FAR, CAP_NEAR, LhbElement, PATH_AUTO, PATH_MICRO, PATH_SPANS, RasterizeLhbParams,
+    CAP_FAR, CAP_NEAR, LhbElement, PATH_AUTO, PATH_SPANS, RasterizeLhbParams,
 };
 use twinlight_core::lattice::{DEPTH_ORIGIN, LatticeMesh, View, subpixel_bits};
 use twinlight_core::{Backend, Error};
@@ -17,7 +17,7 @@ pub const CHECKS: &[(&str, Check)] = &[
     ("lhb: triangles as large as the view", giants),
     ("lhb: nothing, and triangles that cover nothing", nothing),
     ("lhb: caps keep the nearest and the farthest", caps),
-    ("lhb: a hundred thousand layers", layers),
+    ("lhb: a million layers", layers),
     ("lhb: lists around the lengths that change how they are sorted", lengths),
     ("lhb: sums of layers don't wrap", sums),
     ("d3: layered hit buffers in batches, or beyond a binding", small_bindings),
@@ -40,7 +40,7 @@ fn depth(p: [[i64; 3]; 3], half: i64, (i, j): (i64, i64)) -> i64 {
     let pixel = 2 * half;
     let first = |axis: usize| {
         let low = p.iter().map(|v| v[axis]).min().unwrap_or(0);
-        (0..).find(|i| i * pixel + half >= low).unwrap_or(0)
+        ((low / pixel - 1).max(0)..).find(|i| i * pixel + half >= low).unwrap_or(0)
     };
     let (i0, j0) = (first(0), first(1));
     let n_x = (p[1][2] - p[0][2]) * (p[2][1] - p[0][1]) - (p[2][2] - p[0][2]) * (p[1][1] - p[0][1]);
@@ -78,7 +78,12 @@ fn reference(mesh: &LatticeMesh, views: &[View], size: u32) -> Lists {
             if area(p) == 0 {
                 continue;
             }
-            for (j, i) in (0..n).flat_map(|j| (0..n).map(move |i| (j, i))) {
+            // A pixel more than the bounds on every side.
+            let range = |axis: usize| {
+                let [a, b, c] = p.map(|v| v[axis] / (2 * half));
+                (a.min(b).min(c) - 1).max(0)..(a.max(b).max(c) + 2).min(n)
+            };
+            for (j, i) in range(1).flat_map(|j| range(0).map(move |i| (j, i))) {
                 if covers(p, [(2 * i + 1) * half, (2 * j + 1) * half]) {
                     let depth = (depth(p, half, (i, j)) + i64::from(DEPTH_ORIGIN)) as u32;
                     let surface = 2 * t as u32 + u32::from(front);
@@ -123,7 +128,9 @@ fn expect_lists(
     for path in paths {
         let (got, left_out) =
             lists(gpu, mesh, views, RasterizeLhbParams { path, ..RasterizeLhbParams::new(size) })?;
-        expect_same(&format!("size {size}, path {path}"), &got, &want)?;
+        let lengths = |lists: &Lists| lists.iter().map(Vec::len).collect::<Vec<_>>();
+        expect_same(&format!("lengths, size {size}, path {path}"), &lengths(&got), &lengths(&want))?;
+        expect_same(&format!("elements, size {size}, path {path}"), &got.concat(), &want.concat())?;
         expect_same("left out", &left_out, &[])?;
     }
     Ok(())
@@ -160,6 +167,10 @@ fn soups(target: &Target) -> Result<(), Failed> {
     for (seed, size) in [(1, 1), (2, 2), (3, 5), (4, 16), (5, 37), (6, 64), (7, 100)] {
         expect_lists(&gpu, &soup(seed, 150, 18_000), &views(seed, 3, size), size, PATH_AUTO..=PATH_SPANS)?;
     }
+    // Areas of a few units, where every rounding of a depth shows.
+    for (seed, reach) in [(8, 40), (9, 120)] {
+        expect_lists(&gpu, &soup(seed, 6000, reach), &views(seed, 2, 1024), 1024, PATH_AUTO..=PATH_AUTO)?;
+    }
     Ok(())
 }
 
@@ -180,9 +191,13 @@ fn giants(target: &Target) -> Result<(), Failed> {
     ];
     let triangles = vec![[0, 1, 2], [1, 3, 2], [0, 4, 3], [5, 6, 1], [6, 7, 8], [0, 3, 3]];
     let mesh = LatticeMesh::new(corners, triangles).expect("in reach");
-    let size = 1024;
-    let directions = [DVec3::new(0.0, 0.0, 1.0), DVec3::new(0.3, -0.2, 0.9)];
-    for view in directions.map(|d| View::along(d, size).expect("a view")) {
+    // Seen from nearly above, the rounded steps of 1000 pixels leave the range of the vertices.
+    for (size, direction) in [
+        (1024, DVec3::new(0.0, 0.0, 1.0)),
+        (1024, DVec3::new(0.3, -0.2, 0.9)),
+        (1000, DVec3::new(1.2e-4, 0.7e-4, 1.0)),
+    ] {
+        let view = View::along(direction, size).expect("a view");
         expect_lists(&gpu, &mesh, &[view], size, PATH_AUTO..=PATH_SPANS)?;
     }
     Ok(())
@@ -241,11 +256,14 @@ fn stack(count: u32) -> LatticeMesh {
     LatticeMesh::new(vertices, triangles).expect("in reach")
 }
 
-/// A part of hard case R8: one list of several rounds of merging.
+/// Hard case R8: one list of many rounds of merging, by a number of them that is even and one that isn't.
 fn layers(target: &Target) -> Result<(), Failed> {
     let gpu = backend(target)?;
     let view = View::along(DVec3::new(0.0, 0.0, 1.0), 1).expect("a view");
-    expect_lists(&gpu, &stack(100_000), &[view], 1, PATH_AUTO..=PATH_MICRO)
+    for count in [100_000, 1_000_000] {
+        expect_lists(&gpu, &stack(count), &[view], 1, PATH_AUTO..=PATH_AUTO)?;
+    }
+    Ok(())
 }
 
 fn lengths(target: &Target) -> Result<(), Failed> {
