@@ -3,8 +3,8 @@
 // cpu backend-cpu/src/kernels/rasterize_lhb.rs
 // gpu backend-gpu/src/kernels/rasterize_lhb.wgsl
 // oracle conformance/src/oracle/rasterize_lhb.rs
-//! Host side of `rasterize_lhb`: every triangle is counted and filled in by [`cover`], lists are sized, sorted and capped
-//! by [`lists`].
+//! Host side of `rasterize_lhb`: every triangle is counted and filled in by `cover`, lists are sized, sorted and capped
+//! by `lists`.
 
 mod cover;
 mod lists;
