@@ -66,6 +66,18 @@ impl GpuDevice {
         let most = self.report().limits.storage_binding_bytes / size.max(1) as u64;
         usize::try_from(most).unwrap_or(usize::MAX) / CHUNK_GRAIN * CHUNK_GRAIN
     }
+
+    /// Whether one binding holds `len` elements of `T`: for kernels that need all of them at once, before anything of
+    /// that size is allocated.
+    pub(crate) fn expect_bindable<T: Pod>(&self, what: &str, len: usize) -> Result<()> {
+        let limit = self.report().limits.storage_binding_bytes;
+        let bytes = (len as u64 * size_of::<T>() as u64).next_multiple_of(GRANULE);
+        if bytes > limit {
+            let what = format!("bytes of {what} in one binding on {}", self.report().name);
+            return Err(Error::limit(what, bytes, limit));
+        }
+        Ok(())
+    }
 }
 
 /// `0..len` in runs of at most `most` elements, which is a multiple of [`CHUNK_GRAIN`]. Where a binding holds not even a

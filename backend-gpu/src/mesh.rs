@@ -1,19 +1,56 @@
 //! A snapped mesh on a device.
 
+use crate::buffer::{BufferRef, GpuBuffer};
 use crate::device::GpuDevice;
+use crate::scene::upload;
 use twinlight_core::Result;
 use twinlight_core::lattice::LatticeMesh;
 
-/// A resident mesh.
+/// A resident mesh: the buffers that `shared/lattice.wgsl` binds, under the same names.
 #[derive(Debug)]
-pub struct GpuMesh {}
+pub struct GpuMesh {
+    vertices: GpuBuffer<[u32; 2]>,
+    triangles: GpuBuffer<[u32; 3]>,
+    vertex_count: u32,
+    triangle_count: u32,
+}
 
 impl GpuMesh {
     /// Uploads vertices and triangles.
     ///
     /// # Errors
-    /// [`twinlight_core::Error::LimitExceeded`], [`twinlight_core::Error::OutOfMemory`].
-    pub fn new(_device: &GpuDevice, _mesh: &LatticeMesh) -> Result<Self> {
-        Ok(Self {})
+    /// [`twinlight_core::Error::LimitExceeded`] for more of either than a binding holds,
+    /// [`twinlight_core::Error::OutOfMemory`].
+    pub fn new(device: &GpuDevice, mesh: &LatticeMesh) -> Result<Self> {
+        let vertices: Vec<[u32; 2]> = mesh.vertices().iter().map(|&v| packed(v)).collect();
+        Ok(Self {
+            vertices: upload(device, "vertices", &vertices)?,
+            triangles: upload(device, "triangles", mesh.triangles())?,
+            vertex_count: vertices.len() as u32,
+            triangle_count: mesh.triangles().len() as u32,
+        })
     }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> u32 {
+        self.vertex_count
+    }
+
+    /// Number of triangles.
+    pub fn triangle_count(&self) -> u32 {
+        self.triangle_count
+    }
+
+    pub(crate) fn vertices(&self) -> BufferRef<'_> {
+        self.vertices.binding()
+    }
+
+    pub(crate) fn triangles(&self) -> BufferRef<'_> {
+        self.triangles.binding()
+    }
+}
+
+/// x and y in the halves of the first word, x in the low one; z in the second.
+fn packed([x, y, z]: [i16; 3]) -> [u32; 2] {
+    [u32::from(x as u16) | u32::from(y as u16) << 16, i32::from(z) as u32]
 }

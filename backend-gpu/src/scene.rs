@@ -65,7 +65,11 @@ impl GpuScene {
 }
 
 /// Uploads records; a buffer of none holds a zeroed one, because a binding holds at least one element.
-fn upload<T: Pod + Zeroable>(device: &GpuDevice, what: &str, records: &[T]) -> Result<GpuBuffer<T>> {
+pub(crate) fn upload<T: Pod + Zeroable>(
+    device: &GpuDevice,
+    what: &str,
+    records: &[T],
+) -> Result<GpuBuffer<T>> {
     let limit = device.report().limits.storage_binding_bytes;
     let bytes = size_of_val(records) as u64;
     if bytes > limit {

@@ -28,6 +28,8 @@ shared! {
     HASH = "hash";
     /// Twin of `transport::intersect`.
     INTERSECT = "intersect";
+    /// Twin of `lattice`, and the bindings of meshes and views.
+    LATTICE = "lattice";
     /// Twin of `transport::light`; wants `params.environment`.
     LIGHT = "light";
     /// Twin of `math::octahedral`; wants a global `nearest_map: array<u32>`.
@@ -48,4 +50,6 @@ shared! {
     TRIG = "trig";
     /// Twin of `math::vector`.
     VECTOR = "vector";
+    /// 64-bit integers, which Rust has and WGSL hasn't.
+    WIDE = "wide";
 }

@@ -4,13 +4,14 @@
 //! is misspelt; one that is left out shows as a WGSL field that nothing answers to.
 
 use std::mem::{offset_of, size_of};
-use twinlight_backend_gpu::kernels::{self, scan, shade_primary, sort, trace, trace_paths};
+use twinlight_backend_gpu::kernels::{self, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths};
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
-    shade_primary as shade_contract, trace as trace_contract, trace_paths as paths_contract,
+    rasterize_lhb as lhb_contract, shade_primary as shade_contract, trace as trace_contract,
+    trace_paths as paths_contract,
 };
 use twinlight_core::transport::{intersect, light};
-use twinlight_core::{bvh, math, scene, transport};
+use twinlight_core::{bvh, lattice, math, scene, transport};
 
 /// A Rust struct: name, size, and its fields with their offsets.
 struct Layout {
@@ -82,6 +83,46 @@ fn twins() -> Vec<Twins> {
                 ("TILE_SIZE", sort::TILE_SIZE.into()),
                 ("DIGIT_BITS", sort::DIGIT_BITS.into()),
                 ("DIGITS", sort::DIGITS.into()),
+            ],
+        },
+        Twins {
+            source: &rasterize_lhb::SOURCE,
+            structs: vec![
+                layout!(rasterize_lhb::RasterizeLhbBlock {
+                    call,
+                    view_begin,
+                    triangle_begin,
+                    triangle_count,
+                    pair_count,
+                    view_count,
+                    vertex_count,
+                    item_begin,
+                    item_end,
+                    fill,
+                    list_count,
+                    element_count,
+                    run,
+                    tile_count,
+                    loop_rounds,
+                    padding,
+                }),
+                layout!(rasterize_lhb::ListTile { list_begin, list_len, begin }),
+                layout!(rasterize_lhb::ListSums { elements_low, elements_high, tiles, longest }),
+                layout!(lhb_contract::RasterizeLhbParams { size, path, layer_cap, cap_side }),
+                layout!(lhb_contract::LhbElement { surface, depth }),
+                layout!(lattice::View { right, down, forward }),
+            ],
+            constants: vec![
+                ("WORKGROUP_SIZE", rasterize_lhb::WORKGROUP_SIZE.into()),
+                ("TILE_SIZE", rasterize_lhb::TILE_SIZE.into()),
+                ("LISTS_PER_LANE", rasterize_lhb::LISTS_PER_LANE.into()),
+                ("DEPTH_ORIGIN", (lattice::DEPTH_ORIGIN as u32).into()),
+                ("PATH_AUTO", lhb_contract::PATH_AUTO.into()),
+                ("PATH_MICRO", lhb_contract::PATH_MICRO.into()),
+                ("PATH_BLOCKS", lhb_contract::PATH_BLOCKS.into()),
+                ("PATH_LINEAR", lhb_contract::PATH_LINEAR.into()),
+                ("PATH_SPANS", lhb_contract::PATH_SPANS.into()),
+                ("CAP_FAR", lhb_contract::CAP_FAR.into()),
             ],
         },
         Twins {

@@ -15,5 +15,11 @@ pub mod trace_paths;
 use crate::source::KernelSource;
 
 /// Every kernel's source, in pipeline order.
-pub const ALL: &[&KernelSource] =
-    &[&scan::SOURCE, &sort::SOURCE, &trace::SOURCE, &shade_primary::SOURCE, &trace_paths::SOURCE];
+pub const ALL: &[&KernelSource] = &[
+    &scan::SOURCE,
+    &sort::SOURCE,
+    &rasterize_lhb::SOURCE,
+    &trace::SOURCE,
+    &shade_primary::SOURCE,
+    &trace_paths::SOURCE,
+];

@@ -4,10 +4,12 @@
 
 mod chunks;
 mod device;
+mod lhb;
 mod scan;
 mod sort;
 mod strict;
 mod transport;
+mod wide;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use std::process::ExitCode;
@@ -32,9 +34,17 @@ type Check = fn(&Target) -> Result<(), Failed>;
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
-    let checks: Vec<(&str, Check)> =
-        [chunks::CHECKS, device::CHECKS, scan::CHECKS, sort::CHECKS, strict::CHECKS, transport::CHECKS]
-            .concat();
+    let checks: Vec<(&str, Check)> = [
+        chunks::CHECKS,
+        device::CHECKS,
+        lhb::CHECKS,
+        scan::CHECKS,
+        sort::CHECKS,
+        strict::CHECKS,
+        transport::CHECKS,
+        wide::CHECKS,
+    ]
+    .concat();
     let reports = adapters();
     let mut trials = Vec::new();
     for (index, report) in reports.iter().enumerate() {
