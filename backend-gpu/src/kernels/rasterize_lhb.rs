@@ -18,7 +18,7 @@ use crate::source::{KernelSource, WgslFile};
 use bytemuck::{Pod, Zeroable};
 use cover::Cover;
 use lists::Lists;
-use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
+use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbBuffers, LhbElement, RasterizeLhbParams};
 use twinlight_core::lattice::View;
 use twinlight_core::{Error, Result};
 
@@ -147,5 +147,5 @@ pub fn run(
     } else {
         (offsets, elements)
     };
-    Ok(Lhb { size: params.size, view_count: views.len() as u32, offsets, elements, left_out })
+    Ok(LhbBuffers { size: params.size, view_count: views.len() as u32, offsets, elements, left_out })
 }
