@@ -30,7 +30,7 @@ pub fn time(
     let map = backend.download(&buffers.map)?;
     let mut work: Vec<(LhbQuery, Ray)> =
         bounces(scene).map(|(o, n, d, s)| query(&buffers, &map, o, n, d, s)).collect();
-    work.sort_by_key(|(query, _)| query.ray >> 1);
+    work.sort_by_key(|(query, _)| query.ray);
     let (queries, rays): (Vec<_>, Vec<_>) = work.into_iter().unzip();
     let (queries, rays) = (backend.upload(&queries)?, backend.upload(&rays)?);
     let mut elements = backend.zeroed::<LhbElement>(QUERIES)?;
