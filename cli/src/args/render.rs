@@ -151,6 +151,22 @@ impl std::str::FromStr for Layers {
     }
 }
 
+/// What `--show` draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Show {
+    /// A view of the layered hit buffers.
+    Lhb(u32),
+}
+
+impl std::str::FromStr for Show {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let view = text.strip_prefix("lhb:").and_then(|view| view.parse().ok());
+        view.map(Self::Lhb).ok_or_else(|| "not of the form lhb:VIEW, such as lhb:0".into())
+    }
+}
+
 /// Cone approximation of lookups.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ConeName {
@@ -313,6 +329,9 @@ pub struct RenderArgs {
 
     #[command(flatten)]
     pub slhb: SlhbArgs,
+    /// Instead of rendering, draw what the method works with: lhb:VIEW, a hit buffer's layer counts and layers
+    #[arg(long, value_name = "WHAT", help_heading = "Method slhb")]
+    pub show: Option<Show>,
 
     #[command(flatten)]
     pub load: LoadArgs,
