@@ -176,6 +176,15 @@ pub enum ConeName {
     Off,
 }
 
+/// Rays that lookups find nothing for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MissesName {
+    /// They are traced: lines beside a silhouette lose light
+    Trace,
+    /// They leave the scene
+    Leave,
+}
+
 /// Knobs of the method slhb.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Method slhb")]
@@ -192,6 +201,9 @@ pub struct SlhbArgs {
     /// Whether lookups follow the ray or its nearest direction alone
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub cone: ConeName,
+    /// What becomes of rays that lookups find nothing for
+    #[arg(long, value_name = "HOW", default_value = "trace")]
+    pub misses: MissesName,
 }
 
 fn direction_set(text: &str) -> Result<DirectionSet, String> {
