@@ -1,5 +1,6 @@
 //! A backend with one planted bug: everything goes through to a sound backend, and one result comes back wrong.
 
+mod query_lhb;
 mod rasterize_lhb;
 mod scan;
 mod shade_primary;
@@ -146,7 +147,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         queries: &B::Buffer<LhbQuery>,
         hits: &mut B::Buffer<LhbElement>,
     ) -> Result<()> {
-        self.inner.query_lhb(&mesh.inner, lhb, views, queries, hits)
+        query_lhb::query_lhb(self.inner, self.fault, mesh, lhb, views, queries, hits)
     }
 
     fn walk_lhb(
