@@ -159,6 +159,34 @@ faults! {
         PathsSwapChannels "red and blue change places",
         PathsReject "sound samples are counted as rejected",
         PathsAcceptAnything "parameters are not checked";
+    "walk_lhb":
+        WalkLoseBounce "one bounce less than asked for",
+        WalkStopEarly "paths end after two bounces",
+        WalkDoubleDirect "direct light counts twice",
+        WalkDropIndirect "indirect light is lost",
+        WalkAlbedoBias "albedo is three percent too low",
+        WalkEmittersTwice "emissive triangles are counted by lookups and by sampling",
+        WalkEmittersWeighted "sampled emissive triangles are weighted as if rays could meet them",
+        WalkSpheresUnseen "sphere lights are not met by scattered rays",
+        WalkEnvironmentLost "the environment is lost",
+        WalkTraces "scattered rays are traced",
+        WalkNoCone "the cone approximation is left out",
+        WalkNoLift "rays below their surface are not lifted",
+        WalkWrongTriangle "the triangle after the one that is met is shaded",
+        WalkFirstLayer "lists end after their first element",
+        WalkFacing "fronts and backs change places",
+        WalkAgainst "directions are looked up the wrong way round",
+        WalkViewOffByOne "the next view answers",
+        WalkScale "lattice steps are five percent too long",
+        WalkOffCentre "the lattice's centre is left out",
+        WalkIgnoreFirstSample "sample ranges start at 0",
+        WalkOneSample "one sample is taken, however many are asked for",
+        WalkIgnoreSeed "the seed is ignored",
+        WalkIgnoreSampler "the sampler is ignored",
+        WalkWholeImage "the pixel range is ignored",
+        WalkFixedExponent "the film's exponent is fixed",
+        WalkOverwriteFilm "sums are overwritten instead of added to",
+        WalkAcceptAnything "parameters are not checked";
 }
 
 /// A bug the suite did not see.

@@ -7,6 +7,7 @@ mod shade_primary;
 mod sort;
 mod trace;
 mod trace_paths;
+mod walk_lhb;
 
 use crate::faults::Fault;
 use bytemuck::Pod;
@@ -74,7 +75,10 @@ impl<B: Backend> Backend for Faulty<'_, B> {
     }
 
     fn upload_scene(&self, scene: &CompiledScene) -> Result<Self::Scene> {
-        let inner = self.inner.upload_scene(&trace_paths::broken_scene(self.fault, scene))?;
+        let inner = self.inner.upload_scene(&walk_lhb::broken_scene(
+            self.fault,
+            trace_paths::broken_scene(self.fault, scene),
+        ))?;
         Ok(FaultyScene { inner, host: scene.clone() })
     }
 
@@ -160,6 +164,6 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &WalkLhbParams,
         film: &mut B::Buffer<FilmTexel>,
     ) -> Result<()> {
-        self.inner.walk_lhb(&scene.inner, &mesh.inner, lhb, views, map, params, film)
+        walk_lhb::walk_lhb(self.inner, self.fault, scene, mesh, lhb, views, map, params, film)
     }
 }

@@ -8,13 +8,14 @@ pub mod shade_primary;
 pub mod sort;
 pub mod trace;
 pub mod trace_paths;
+pub mod walk_lhb;
 
 use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 7] =
-    ["scan", "sort", "rasterize_lhb", "query_lhb", "trace", "shade_primary", "trace_paths"];
+pub const STEMS: [&str; 8] =
+    ["scan", "sort", "rasterize_lhb", "query_lhb", "trace", "shade_primary", "trace_paths", "walk_lhb"];
 
 /// Lists every kernel's trials.
 pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
@@ -25,6 +26,7 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     trace::list(list);
     shade_primary::list(list);
     trace_paths::list(list);
+    walk_lhb::list(list);
 }
 
 /// Bit equality is promised where float results are those of IEEE 754 evaluated as written.

@@ -8,3 +8,4 @@ pub mod shade_primary;
 pub mod sort;
 pub mod trace;
 pub mod trace_paths;
+pub mod walk_lhb;

@@ -21,6 +21,7 @@ use twinlight_core::Backend;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbBuffers, LhbElement, RasterizeLhbParams};
 use twinlight_core::lattice::{LatticeMesh, View};
+use twinlight_fixtures::random::Random;
 
 /// Lists the trials.
 pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
@@ -112,4 +113,25 @@ fn both_ways(hits: &[LhbElement]) -> Check {
     ensure(met * 20 > hits.len() && met < hits.len(), || {
         format!("{met} of {} queries meet something", hits.len())
     })
+}
+
+/// Queries along the rays of `views` views: from lattice points of triangles, either side, with a window of a few pixels, and from
+/// free space.
+pub(crate) fn scattered(mesh: &LatticeMesh, views: usize, count: usize) -> Vec<LhbQuery> {
+    let mut random = Random::new(61);
+    let query = |i: usize| {
+        let free = inputs::from(inputs::anywhere(&mut random), random.index(2 * views) as u32);
+        if i % 3 == 0 || mesh.triangles().is_empty() {
+            return free;
+        }
+        let triangle = random.index(mesh.triangles().len());
+        LhbQuery {
+            position: inputs::on_triangle(&mut random, mesh, triangle),
+            leaves: 2 * triangle as u32 + random.index(2) as u32,
+            window: random.index(4_000) as u32 * (1 << 14),
+            offset: [0, 1].map(|_| random.index(2_000) as i32 - 1_000),
+            ..free
+        }
+    };
+    (0..count).map(query).collect()
 }

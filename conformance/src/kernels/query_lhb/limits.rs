@@ -62,11 +62,7 @@ fn clearance_to_the_step<B: Backend>(cx: &Context<'_, B>) -> Check {
             .flat_map(|(z, ray)| [8, 9].map(|leaves| (z, ray, leaves)))
             .flat_map(|(z, ray, leaves)| {
                 // The plane is met at the pixel's centre, the position's own point of it is beside.
-                [0, 1_000].map(|x| LhbQuery {
-                    leaves,
-                    window: 20_000 << 14,
-                    ..from([x, 0, z + x as i32], ray)
-                })
+                [0, 1_000].map(|x| LhbQuery { leaves, window: 20_000 << 14, ..from([x, 0, z + x], ray) })
             })
             .collect();
         both_ways(&seen.agreed(cx, &queries)?)?;
