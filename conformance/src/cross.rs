@@ -3,7 +3,9 @@
 
 use crate::compare::{Shape, exact};
 use crate::expectations::Verdict;
+use crate::kernels::query_lhb::scattered;
 use crate::kernels::trace_paths::{params, traced};
+use crate::kernels::walk_lhb::{Prepared, walked};
 use crate::scenes::{Rays, compiled};
 use crate::trial::{Check, Context, Failure, Options, ensure};
 use twinlight_core::Backend;
@@ -12,7 +14,7 @@ use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::Hit;
 use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsParams};
 use twinlight_core::lattice::{Lattice, LatticeMesh, View};
-use twinlight_core::scene::{Camera, Scene};
+use twinlight_core::scene::{Camera, CompiledScene, Scene};
 use twinlight_fixtures::scenes::builtin;
 use twinlight_methods::post::image::Image;
 use twinlight_methods::post::metrics::ztest::{Estimate, ZTest, ZTestSettings};
@@ -22,7 +24,14 @@ pub type CrossCheck<A, B> = fn(&A, &B) -> Check;
 
 /// Every comparison, by name. The first backend is the yardstick in messages.
 pub fn checks<A: Backend, B: Backend>() -> Vec<(&'static str, CrossCheck<A, B>)> {
-    vec![("rasterize_lhb", lists), ("trace", hits), ("shade_primary", gbuffers), ("trace_paths", films)]
+    vec![
+        ("rasterize_lhb", lists),
+        ("query_lhb", lookups),
+        ("trace", hits),
+        ("shade_primary", gbuffers),
+        ("trace_paths", films),
+        ("walk_lhb", walks),
+    ]
 }
 
 /// The verdict of one comparison.
@@ -54,14 +63,18 @@ fn context<'a, B>(backend: &'a B, options: &'a Options, name: &'a str) -> Contex
     Context { backend, options, name }
 }
 
+/// Of 48² pixels.
+fn four_views() -> twinlight_core::Result<Vec<View>> {
+    let directions = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.3, -0.8, 0.5], [-0.6, 0.2, 0.7]];
+    directions.map(|d| View::along(d.into(), 48)).into_iter().collect()
+}
+
 /// Layered hit buffers from four directions, in 48² pixels: integers, so the same bits in every mode.
 fn lists<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
     fn run<B: Backend>(backend: &B, scene: &Scene) -> Result<(Vec<u32>, Vec<LhbElement>), Failure> {
         let compiled = compiled(scene);
         let mesh = LatticeMesh::of_scene(&Lattice::of_scene(&compiled)?, &compiled)?;
-        let directions = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.3, -0.8, 0.5], [-0.6, 0.2, 0.7]];
-        let views: Vec<View> =
-            directions.map(|d| View::along(d.into(), 48)).into_iter().collect::<Result<_, _>>()?;
+        let views = four_views()?;
         let lhb =
             backend.rasterize_lhb(&backend.upload_mesh(&mesh)?, &views, &RasterizeLhbParams::new(48))?;
         Ok((backend.download(&lhb.offsets)?, backend.download(&lhb.elements)?))
@@ -72,6 +85,25 @@ fn lists<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
         let cx = context(b, &options, "cross.rasterize_lhb");
         exact(&cx, "offsets", &got.0, &want.0, Shape::Image { width: 48 })?;
         exact(&cx, "elements", &got.1, &want.1, Shape::Line)
+    })
+}
+
+/// Lookups in such buffers from all over the lattice, from triangles and from between them: integers too.
+fn lookups<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    fn run<B: Backend>(backend: &B, scene: &Scene) -> Result<Vec<LhbElement>, Failure> {
+        let compiled = compiled(scene);
+        let mesh = LatticeMesh::of_scene(&Lattice::of_scene(&compiled)?, &compiled)?;
+        let views = four_views()?;
+        let queries = backend.upload(&scattered(&mesh, views.len(), 3_000))?;
+        let resident = backend.upload_mesh(&mesh)?;
+        let lhb = backend.rasterize_lhb(&resident, &views, &RasterizeLhbParams::new(48))?;
+        let mut hits = backend.zeroed::<LhbElement>(3_000)?;
+        backend.query_lhb(&resident, &lhb, &views, &queries, &mut hits)?;
+        Ok(backend.download(&hits)?)
+    }
+    each_scene(|scene| {
+        let (want, got) = (run(a, scene)?, run(b, scene)?);
+        exact(&context(b, &Options::default(), "cross.query_lhb"), "hits", &got, &want, Shape::Line)
     })
 }
 
@@ -118,13 +150,8 @@ fn gbuffers<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
         let (want, got) = (run(a, scene)?, run(b, scene)?);
         if both_strict(a, b) {
             let options = Options::default();
-            return exact(
-                &context(b, &options, "cross.shade_primary"),
-                "gbuffer",
-                &got,
-                &want,
-                Shape::Image { width: 64 },
-            );
+            let cx = context(b, &options, "cross.shade_primary");
+            return exact(&cx, "gbuffer", &got, &want, Shape::Image { width: 64 });
         }
         let other = want.iter().zip(&got).filter(|(a, b)| a.triangle != b.triangle).count();
         ensure(other <= 30, || format!("{other} of 3072 pixels show another triangle"))
@@ -143,17 +170,38 @@ fn films<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
             let params = TracePathsParams { sampler: SAMPLER_SOBOL, ..params };
             let (want, got) = (traced(a, &compiled, &params)?, traced(b, &compiled, &params)?);
             let options = Options::default();
-            return exact(
-                &context(b, &options, "cross.trace_paths"),
-                "film",
-                &got,
-                &want,
-                Shape::Image { width: 32 },
-            );
+            let cx = context(b, &options, "cross.trace_paths");
+            return exact(&cx, "film", &got, &want, Shape::Image { width: 32 });
         }
         let other = TracePathsParams { seed: params.seed + 1, ..params };
         let estimates = [traced(a, &compiled, &params)?, traced(b, &compiled, &other)?];
         z_test(&estimates, &params)
+    })
+}
+
+/// Walks of 16 × 16 pixels through 80 directions of 32². In strict mode the same bits; else two estimates of one picture, as
+/// [`films`] compares them: what a lookup finds is decided by integers, but where it looks is not.
+fn walks<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    fn run<B: Backend>(
+        backend: &B,
+        compiled: &CompiledScene,
+        call: &TracePathsParams,
+    ) -> Result<Vec<FilmTexel>, Failure> {
+        walked(backend, &Prepared::new(backend, compiled, "icosahedron:80", 32)?, call)
+    }
+    let strict = both_strict(a, b);
+    each_scene(|scene| {
+        let compiled = compiled(scene);
+        let params = params(scene, &compiled, (16, 16), if strict { 16 } else { 256 }, Some(6))?;
+        if strict {
+            let params = TracePathsParams { sampler: SAMPLER_SOBOL, ..params };
+            let (want, got) = (run(a, &compiled, &params)?, run(b, &compiled, &params)?);
+            let options = Options::default();
+            let cx = context(b, &options, "cross.walk_lhb");
+            return exact(&cx, "film", &got, &want, Shape::Image { width: 16 });
+        }
+        let other = TracePathsParams { seed: params.seed + 1, ..params };
+        z_test(&[run(a, &compiled, &params)?, run(b, &compiled, &other)?], &params)
     })
 }
 

@@ -1,11 +1,13 @@
 //! A backend with one planted bug: everything goes through to a sound backend, and one result comes back wrong.
 
+mod query_lhb;
 mod rasterize_lhb;
 mod scan;
 mod shade_primary;
 mod sort;
 mod trace;
 mod trace_paths;
+mod walk_lhb;
 
 use crate::faults::Fault;
 use bytemuck::Pod;
@@ -73,7 +75,10 @@ impl<B: Backend> Backend for Faulty<'_, B> {
     }
 
     fn upload_scene(&self, scene: &CompiledScene) -> Result<Self::Scene> {
-        let inner = self.inner.upload_scene(&trace_paths::broken_scene(self.fault, scene))?;
+        let inner = self.inner.upload_scene(&walk_lhb::broken_scene(
+            self.fault,
+            trace_paths::broken_scene(self.fault, scene),
+        ))?;
         Ok(FaultyScene { inner, host: scene.clone() })
     }
 
@@ -146,7 +151,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         queries: &B::Buffer<LhbQuery>,
         hits: &mut B::Buffer<LhbElement>,
     ) -> Result<()> {
-        self.inner.query_lhb(&mesh.inner, lhb, views, queries, hits)
+        query_lhb::query_lhb(self.inner, self.fault, mesh, lhb, views, queries, hits)
     }
 
     fn walk_lhb(
@@ -159,6 +164,6 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &WalkLhbParams,
         film: &mut B::Buffer<FilmTexel>,
     ) -> Result<()> {
-        self.inner.walk_lhb(&scene.inner, &mesh.inner, lhb, views, map, params, film)
+        walk_lhb::walk_lhb(self.inner, self.fault, scene, mesh, lhb, views, map, params, film)
     }
 }

@@ -1,27 +1,32 @@
 //! Cases and laws of every kernel, in pipeline order.
 
 mod property;
+pub mod query_lhb;
 pub mod rasterize_lhb;
 pub mod scan;
 pub mod shade_primary;
 pub mod sort;
 pub mod trace;
 pub mod trace_paths;
+pub mod walk_lhb;
 
 use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 6] = ["scan", "sort", "rasterize_lhb", "trace", "shade_primary", "trace_paths"];
+pub const STEMS: [&str; 8] =
+    ["scan", "sort", "rasterize_lhb", "query_lhb", "trace", "shade_primary", "trace_paths", "walk_lhb"];
 
 /// Lists every kernel's trials.
 pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     scan::list(list);
     sort::list(list);
     rasterize_lhb::list(list);
+    query_lhb::list(list);
     trace::list(list);
     shade_primary::list(list);
     trace_paths::list(list);
+    walk_lhb::list(list);
 }
 
 /// Bit equality is promised where float results are those of IEEE 754 evaluated as written.

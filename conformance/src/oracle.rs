@@ -1,9 +1,11 @@
 //! Third opinions, one per kernel: serial, naive on purpose, exact or in f64. They share no algorithm with either twin,
 //! so that a misreading both twins share still shows.
 
+pub mod query_lhb;
 pub mod rasterize_lhb;
 pub mod scan;
 pub mod shade_primary;
 pub mod sort;
 pub mod trace;
 pub mod trace_paths;
+pub mod walk_lhb;

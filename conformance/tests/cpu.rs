@@ -111,7 +111,7 @@ fn d10_host_flushes_subnormals() -> Check {
     let flushing = pool.install(|| {
         let options = Options {
             effort: Effort::Quick,
-            kernels: ["scan", "sort", "rasterize_lhb", "trace"].map(String::from).into(),
+            kernels: ["scan", "sort", "rasterize_lhb", "query_lhb", "trace"].map(String::from).into(),
             ..Options::default()
         };
         let report = run(&CpuBackend::new(), &options, "");

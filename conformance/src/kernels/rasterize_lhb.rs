@@ -6,7 +6,7 @@
 //! Cases and laws of `rasterize_lhb`. Everything is compared exactly: coverage, depth and order are integers.
 
 mod cases;
-mod inputs;
+pub(super) mod inputs;
 mod intake;
 mod laws;
 mod layers;

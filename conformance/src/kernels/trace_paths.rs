@@ -5,7 +5,7 @@
 // oracle conformance/src/oracle/trace_paths.rs
 //! Cases and laws of `trace_paths`: pictures whose radiance is known, and the film's integers, which are exact.
 
-mod film;
+pub(super) mod film;
 mod laws;
 
 use crate::oracle::trace_paths::{self as oracle, Known};

@@ -4,19 +4,19 @@ use crate::trial::{Failure, ensure};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
 
 /// A (low, high) pair.
-pub(super) fn wide(words: [u32; 2]) -> u64 {
+pub(in crate::kernels) fn wide(words: [u32; 2]) -> u64 {
     u64::from(words[0]) + (u64::from(words[1]) << 32)
 }
 
 /// (low, high) of a u64.
-pub(super) fn words(value: u64) -> [u32; 2] {
+pub(in crate::kernels) fn words(value: u64) -> [u32; 2] {
     [value as u32, (value >> 32) as u32]
 }
 
 /// The mean over a picture.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Mean {
-    pub(super) radiance: [f64; 3],
+pub(in crate::kernels) struct Mean {
+    pub(in crate::kernels) radiance: [f64; 3],
     /// Variance of the mean luminance, from the spread of each pixel's samples.
     variance: f64,
 }
@@ -27,7 +27,7 @@ fn luminance(c: [f64; 3]) -> f64 {
 
 impl Mean {
     /// Means and variance of `film`, which must hold every sample that `params` asks for and no rejected one.
-    pub(super) fn of(film: &[FilmTexel], params: &TracePathsParams) -> Result<Self, Failure> {
+    pub(in crate::kernels) fn of(film: &[FilmTexel], params: &TracePathsParams) -> Result<Self, Failure> {
         let scale = f64::from(-params.film_exponent).exp2();
         let moment_scale = f64::from(-params.moment_exponent).exp2();
         let (n, pixels) = (f64::from(params.sample_count), film.len() as f64);
@@ -50,7 +50,7 @@ impl Mean {
     }
 
     /// Relative standard error of the mean.
-    pub(super) fn standard_error(&self) -> f64 {
+    pub(in crate::kernels) fn standard_error(&self) -> f64 {
         let luminance = luminance(self.radiance);
         if luminance > 0.0 { self.variance.sqrt() / luminance } else { 0.0 }
     }
