@@ -170,6 +170,7 @@ faults! {
         WalkSpheresUnseen "sphere lights are not met by scattered rays",
         WalkEnvironmentLost "the environment is lost",
         WalkTraces "scattered rays are traced",
+        WalkLosesMisses "rays whose lookup finds nothing leave the scene",
         WalkNoCone "the cone approximation is left out",
         WalkNoLift "rays below their surface are not lifted",
         WalkWrongTriangle "the triangle after the one that is met is shaded",

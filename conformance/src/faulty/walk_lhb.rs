@@ -5,7 +5,7 @@ use super::{FaultyMesh, FaultyScene};
 use crate::faults::Fault;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbBuffers, LhbElement};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams, UNLIMITED_BOUNCES};
-use twinlight_core::kernels::walk_lhb::{WalkLhbBlock, WalkLhbParams};
+use twinlight_core::kernels::walk_lhb::{CONE, TRACE_MISSES, WalkLhbBlock, WalkLhbParams};
 use twinlight_core::lattice::View;
 use twinlight_core::scene::{CompiledScene, LIGHT_TRIANGLE, NONE};
 use twinlight_core::{Backend, Result};
@@ -93,7 +93,8 @@ fn asked(fault: Fault, call: &TracePathsParams) -> TracePathsParams {
 
 fn lookup(fault: Fault, block: &WalkLhbBlock) -> WalkLhbBlock {
     match fault {
-        Fault::WalkNoCone => WalkLhbBlock { flags: 0, ..*block },
+        Fault::WalkNoCone => WalkLhbBlock { flags: block.flags & !CONE, ..*block },
+        Fault::WalkLosesMisses => WalkLhbBlock { flags: block.flags & !TRACE_MISSES, ..*block },
         Fault::WalkNoLift => WalkLhbBlock { lift: 0.0, ..*block },
         Fault::WalkScale => WalkLhbBlock { steps_per_unit: block.steps_per_unit / 1.05, ..*block },
         Fault::WalkOffCentre => WalkLhbBlock { centre: [0.0; 3], ..*block },
