@@ -28,10 +28,12 @@ shared! {
     HASH = "hash";
     /// Twin of `transport::intersect`.
     INTERSECT = "intersect";
-    /// Twin of `lattice`, and the bindings of meshes and views.
+    /// Twin of `lattice`.
     LATTICE = "lattice";
     /// Twin of `transport::light`; wants `params.environment`.
     LIGHT = "light";
+    /// What a lookup in layered hit buffers meets, and the bindings of them; wants `params.lhb`.
+    LOOK_UP = "look_up";
     /// Twin of `math::octahedral`; wants a global `nearest_map: array<u32>`.
     OCTAHEDRAL = "octahedral";
     /// Twin of `transport::offset`.

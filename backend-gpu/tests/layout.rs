@@ -4,11 +4,13 @@
 //! is misspelt; one that is left out shows as a WGSL field that nothing answers to.
 
 use std::mem::{offset_of, size_of};
-use twinlight_backend_gpu::kernels::{self, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths};
+use twinlight_backend_gpu::kernels::{
+    self, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths,
+};
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
-    rasterize_lhb as lhb_contract, shade_primary as shade_contract, trace as trace_contract,
-    trace_paths as paths_contract,
+    query_lhb as query_contract, rasterize_lhb as lhb_contract, shade_primary as shade_contract,
+    trace as trace_contract, trace_paths as paths_contract,
 };
 use twinlight_core::transport::{intersect, light};
 use twinlight_core::{bvh, lattice, math, scene, transport};
@@ -43,12 +45,19 @@ struct Twins {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Constant {
     U32(u32),
+    I32(i32),
     F32(f32),
 }
 
 impl From<u32> for Constant {
     fn from(value: u32) -> Self {
         Self::U32(value)
+    }
+}
+
+impl From<i32> for Constant {
+    fn from(value: i32) -> Self {
+        Self::I32(value)
     }
 }
 
@@ -124,6 +133,16 @@ fn twins() -> Vec<Twins> {
                 ("PATH_SPANS", lhb_contract::PATH_SPANS.into()),
                 ("CAP_FAR", lhb_contract::CAP_FAR.into()),
             ],
+        },
+        Twins {
+            source: &query_lhb::SOURCE,
+            structs: with_lookups(vec![layout!(query_lhb::QueryLhbBlock {
+                lhb,
+                query_count,
+                loop_rounds,
+                padding,
+            })]),
+            constants: with_lookup_constants(vec![("WORKGROUP_SIZE", query_lhb::WORKGROUP_SIZE.into())]),
         },
         Twins {
             source: &trace::SOURCE,
@@ -242,6 +261,20 @@ fn with_camera(mut structs: Vec<Layout>) -> Vec<Layout> {
     with_scene(structs)
 }
 
+/// The structs of `shared/look_up.wgsl`.
+fn with_lookups(mut structs: Vec<Layout>) -> Vec<Layout> {
+    // WGSL has no numbers of 16 bits.
+    let plane = layout!(lattice::LatticePlane { offset });
+    structs.extend([
+        layout!(query_lhb::LhbHeader { size, view_count, element_count, plane_count }),
+        layout!(query_contract::LhbQuery { position, ray, offset, leaves, window }),
+        layout!(lhb_contract::LhbElement { surface, depth }),
+        layout!(lattice::View { right, down, forward }),
+        Layout { fields: [vec![("normal_xy", 0), ("normal_z", 4)], plane.fields].concat(), ..plane },
+    ]);
+    structs
+}
+
 type Constants = Vec<(&'static str, Constant)>;
 
 /// The constants of `shared/intersect.wgsl` and `shared/traverse.wgsl`.
@@ -276,6 +309,16 @@ fn with_lights(mut constants: Constants) -> Constants {
         ("LIGHT_ENVIRONMENT", scene::LIGHT_ENVIRONMENT.into()),
     ]);
     with_intersection(constants)
+}
+
+/// The constants of `shared/look_up.wgsl`.
+fn with_lookup_constants(mut constants: Constants) -> Constants {
+    constants.extend([
+        ("DEPTH_ORIGIN", (lattice::DEPTH_ORIGIN as u32).into()),
+        ("CLEARANCE", query_contract::CLEARANCE.into()),
+        ("NO_ELEMENT", query_contract::NO_ELEMENT.into()),
+    ]);
+    constants
 }
 
 #[test]
@@ -357,11 +400,11 @@ const WIDTH: f32 = 0.1f;
     for (result, expected) in wrong {
         assert_eq!(result, Err(format!("Probe: {expected}")));
     }
-    assert_eq!(compare_constant(&checked, "SIZE", 3.into()), Ok(()));
-    assert_eq!(compare_constant(&checked, "WIDTH", 0.1.into()), Ok(()));
-    assert!(compare_constant(&checked, "SIZE", 4.into()).is_err());
+    assert_eq!(compare_constant(&checked, "SIZE", 3_u32.into()), Ok(()));
+    assert_eq!(compare_constant(&checked, "WIDTH", 0.1_f32.into()), Ok(()));
+    assert!(compare_constant(&checked, "SIZE", 4_u32.into()).is_err());
     assert!(compare_constant(&checked, "WIDTH", 0.1_f32.next_up().into()).is_err());
-    assert!(compare_constant(&checked, "ABSENT", 4.into()).is_err());
+    assert!(compare_constant(&checked, "ABSENT", 4_u32.into()).is_err());
 }
 
 fn compare_struct(checked: &CheckedModule, layout: &Layout) -> Result<(), String> {
@@ -404,6 +447,7 @@ fn compare_constant(checked: &CheckedModule, name: &str, value: Constant) -> Res
     }
     match (&module.global_expressions[init], value) {
         (naga::Expression::Literal(naga::Literal::U32(wgsl)), Constant::U32(rust)) if *wgsl == rust => Ok(()),
+        (naga::Expression::Literal(naga::Literal::I32(wgsl)), Constant::I32(rust)) if *wgsl == rust => Ok(()),
         (naga::Expression::Literal(naga::Literal::F32(wgsl)), Constant::F32(rust))
             if wgsl.to_bits() == rust.to_bits() =>
         {

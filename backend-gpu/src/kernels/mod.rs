@@ -19,6 +19,7 @@ pub const ALL: &[&KernelSource] = &[
     &scan::SOURCE,
     &sort::SOURCE,
     &rasterize_lhb::SOURCE,
+    &query_lhb::SOURCE,
     &trace::SOURCE,
     &shade_primary::SOURCE,
     &trace_paths::SOURCE,

@@ -5,6 +5,7 @@
 mod chunks;
 mod device;
 mod lhb;
+mod lookups;
 mod scan;
 mod sort;
 mod strict;
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         chunks::CHECKS,
         device::CHECKS,
         lhb::CHECKS,
+        lookups::CHECKS,
         scan::CHECKS,
         sort::CHECKS,
         strict::CHECKS,
