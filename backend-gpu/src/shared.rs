@@ -30,6 +30,8 @@ shared! {
     INTERSECT = "intersect";
     /// Twin of `lattice`.
     LATTICE = "lattice";
+    /// Twin of `transport::lhb`; wants `shared/look_up.wgsl` and the scene's triangles.
+    LHB = "lhb";
     /// Twin of `transport::light`; wants `params.environment`.
     LIGHT = "light";
     /// What a lookup in layered hit buffers meets, and the bindings of them; wants `params.lhb`.
@@ -38,6 +40,8 @@ shared! {
     OCTAHEDRAL = "octahedral";
     /// Twin of `transport::offset`.
     OFFSET = "offset";
+    /// What the kernels that follow paths share; wants `params.call`, `params.environment` and `EMITTERS_ARE_MET`.
+    PATH = "path";
     /// Twin of `scene::compiled`, and the scene's bindings.
     SCENE = "scene";
     /// Twin of `math::sobol`.

@@ -5,14 +5,14 @@
 
 use std::mem::{offset_of, size_of};
 use twinlight_backend_gpu::kernels::{
-    self, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths,
+    self, path, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths, walk_lhb,
 };
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
     query_lhb as query_contract, rasterize_lhb as lhb_contract, shade_primary as shade_contract,
-    trace as trace_contract, trace_paths as paths_contract,
+    trace as trace_contract, trace_paths as paths_contract, walk_lhb as walk_contract,
 };
-use twinlight_core::transport::{intersect, light};
+use twinlight_core::transport::{intersect, lhb, light};
 use twinlight_core::{bvh, lattice, math, scene, transport};
 
 /// A Rust struct: name, size, and its fields with their offsets.
@@ -180,45 +180,55 @@ fn twins() -> Vec<Twins> {
         },
         Twins {
             source: &trace_paths::SOURCE,
-            structs: with_camera(vec![
-                layout!(trace_paths::TracePathsBlock {
+            structs: with_paths(vec![layout!(trace_paths::TracePathsBlock {
+                call,
+                environment,
+                segment,
+                alive_word,
+                loop_rounds,
+                film_begin,
+            })]),
+            constants: with_path_constants(vec![(
+                "VERTICES_PER_DISPATCH",
+                trace_paths::VERTICES_PER_DISPATCH.into(),
+            )]),
+        },
+        Twins {
+            source: &walk_lhb::SOURCE,
+            structs: with_lookups(with_paths(vec![
+                layout!(walk_lhb::WalkLhbParams {
                     call,
+                    lookup,
                     environment,
+                    lhb,
                     segment,
                     alive_word,
                     loop_rounds,
                     film_begin,
                 }),
-                layout!(trace_paths::PathState {
-                    origin,
-                    pdf,
-                    direction,
-                    vertices,
-                    throughput,
-                    alive,
-                    direct,
-                    padding_a,
-                    indirect,
-                    padding_b,
+                layout!(walk_lhb::Walker { path, normal, leaves, slot, u, v, t }),
+                layout!(walk_contract::WalkLhbBlock {
+                    centre,
+                    steps_per_unit,
+                    unit_per_step,
+                    row_scale,
+                    lift,
+                    size,
+                    subpixel_bits,
+                    map_resolution,
+                    flags,
+                    padding,
                 }),
-                layout!(paths_contract::TracePathsParams {
-                    camera, width, height, pixel_begin, pixel_count, sample_begin, sample_count, seed, max_bounces,
-                    roulette_begin, sampler as sampler_kind, film_exponent, moment_exponent,
-                }),
-                layout!(paths_contract::FilmTexel { direct, indirect, luminance_squared, samples, rejected }),
-            ]),
-            constants: with_lights(vec![
-                ("WORKGROUP_SIZE", trace_paths::WORKGROUP_SIZE.into()),
-                ("VERTICES_PER_DISPATCH", trace_paths::VERTICES_PER_DISPATCH.into()),
-                ("SAMPLER_SOBOL", paths_contract::SAMPLER_SOBOL.into()),
-                ("PAIRS_PER_VERTEX", paths_contract::PAIRS_PER_VERTEX.into()),
-                ("MAX_SURVIVAL", paths_contract::MAX_SURVIVAL.into()),
-                ("INV_PI", transport::INV_PI.into()),
-                ("MATERIAL_OPAQUE", scene::MATERIAL_OPAQUE.into()),
-                ("MATERIAL_MIRROR", scene::MATERIAL_MIRROR.into()),
-                ("MATERIAL_DIELECTRIC", scene::MATERIAL_DIELECTRIC.into()),
-                ("OUT_OF_RANGE", math::fixed::OUT_OF_RANGE[0].into()),
-            ]),
+            ])),
+            constants: with_lookup_constants(with_path_constants(vec![
+                ("CONE", walk_contract::CONE.into()),
+                ("FINE", lhb::FINE.into()),
+                ("COARSE", lhb::COARSE.into()),
+                ("ACROSS", lhb::ACROSS.into()),
+                ("HALF_DIAGONAL", lhb::HALF_DIAGONAL.into()),
+                ("LEAST_SLOPE", lhb::LEAST_SLOPE.into()),
+                ("GREATEST_SLOPE", lhb::GREATEST_SLOPE.into()),
+            ])),
         },
     ]
 }
@@ -259,6 +269,30 @@ fn with_camera(mut structs: Vec<Layout>) -> Vec<Layout> {
         padding_e,
     }));
     with_scene(structs)
+}
+
+/// Those, and the structs of `shared/path.wgsl`.
+fn with_paths(mut structs: Vec<Layout>) -> Vec<Layout> {
+    structs.extend([
+        layout!(path::PathState {
+            origin,
+            pdf,
+            direction,
+            vertices,
+            throughput,
+            alive,
+            direct,
+            padding_a,
+            indirect,
+            padding_b,
+        }),
+        layout!(paths_contract::TracePathsParams {
+            camera, width, height, pixel_begin, pixel_count, sample_begin, sample_count, seed, max_bounces,
+            roulette_begin, sampler as sampler_kind, film_exponent, moment_exponent,
+        }),
+        layout!(paths_contract::FilmTexel { direct, indirect, luminance_squared, samples, rejected }),
+    ]);
+    with_camera(structs)
 }
 
 /// The structs of `shared/look_up.wgsl`.
@@ -309,6 +343,22 @@ fn with_lights(mut constants: Constants) -> Constants {
         ("LIGHT_ENVIRONMENT", scene::LIGHT_ENVIRONMENT.into()),
     ]);
     with_intersection(constants)
+}
+
+/// Those, and the constants of `shared/path.wgsl` and `shared/bsdf.wgsl`.
+fn with_path_constants(mut constants: Constants) -> Constants {
+    constants.extend([
+        ("WORKGROUP_SIZE", path::WORKGROUP_SIZE.into()),
+        ("SAMPLER_SOBOL", paths_contract::SAMPLER_SOBOL.into()),
+        ("PAIRS_PER_VERTEX", paths_contract::PAIRS_PER_VERTEX.into()),
+        ("MAX_SURVIVAL", paths_contract::MAX_SURVIVAL.into()),
+        ("INV_PI", transport::INV_PI.into()),
+        ("MATERIAL_OPAQUE", scene::MATERIAL_OPAQUE.into()),
+        ("MATERIAL_MIRROR", scene::MATERIAL_MIRROR.into()),
+        ("MATERIAL_DIELECTRIC", scene::MATERIAL_DIELECTRIC.into()),
+        ("OUT_OF_RANGE", math::fixed::OUT_OF_RANGE[0].into()),
+    ]);
+    with_lights(constants)
 }
 
 /// The constants of `shared/look_up.wgsl`.

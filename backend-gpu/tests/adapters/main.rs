@@ -10,6 +10,7 @@ mod scan;
 mod sort;
 mod strict;
 mod transport;
+mod walks;
 mod wide;
 
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         sort::CHECKS,
         strict::CHECKS,
         transport::CHECKS,
+        walks::CHECKS,
         wide::CHECKS,
     ]
     .concat();

@@ -92,7 +92,8 @@ impl WalkLhbParams {
             let what = format!("{} sub-pixel bits for views of {}", lookup.subpixel_bits, lookup.size);
             return Err(Error::invalid("walk_lhb", what));
         }
-        if lookup.map_resolution % 2 != 0 || !(2..=MAX_RESOLUTION).contains(&lookup.map_resolution) {
+        if !lookup.map_resolution.is_multiple_of(2) || !(2..=MAX_RESOLUTION).contains(&lookup.map_resolution)
+        {
             return Err(Error::invalid(
                 "walk_lhb",
                 format!("map of {} cells per row", lookup.map_resolution),
