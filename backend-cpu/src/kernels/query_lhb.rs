@@ -27,6 +27,9 @@ pub(crate) struct LhbData<'a> {
 /// Queries that are looked up side by side: more than memory serves at once.
 pub(crate) const BATCH: usize = 32;
 
+/// Elements of a list that are judged side by side.
+const GROUP: usize = 4;
+
 const NOTHING: LhbElement = LhbElement { surface: NO_ELEMENT, depth: 0 };
 
 pub(crate) fn query_lhb(isa: Isa, lhb: LhbData<'_>, queries: &[LhbQuery], hits: &mut [LhbElement]) {
@@ -84,12 +87,7 @@ pub(crate) fn look_up(lhb: &LhbData<'_>, queries: &[LhbQuery], hits: &mut [LhbEl
     }
     // [2] walk the list
     for ((query, place), hit) in queries.iter().zip(&places).zip(hits) {
-        let list = lhb.elements.get(place.begin as usize..place.end as usize).unwrap_or_default();
-        *hit = if query.ray & 1 == 0 {
-            ahead(lhb, query, list.iter(), place.z, 0)
-        } else {
-            ahead(lhb, query, list.iter().rev(), place.z, 1)
-        };
+        *hit = if query.ray & 1 == 0 { ahead::<0>(lhb, query, place) } else { ahead::<1>(lhb, query, place) };
     }
 }
 
@@ -110,36 +108,59 @@ fn project(lhb: &LhbData<'_>, query: &LhbQuery) -> Place {
     Place { list: (number * lhb.size + row) * lhb.size + column, begin: 0, end: 0, z }
 }
 
-/// The first element of `list` that lies ahead.
+/// The first element of a list that lies ahead; the last, for `REVERSED` 1. Lists are read a group at a time: most end in the
+/// first, and no processor foresees at which of its elements.
 #[inline(always)]
-fn ahead<'a>(
-    lhb: &LhbData<'_>,
-    query: &LhbQuery,
-    list: impl Iterator<Item = &'a LhbElement>,
-    z: i32,
-    reversed: u32,
-) -> LhbElement {
-    let window = query.window as i32;
-    for element in list {
-        let beyond = if reversed == 0 { element.depth as i32 - z } else { z - element.depth as i32 };
-        if beyond < -window {
-            continue;
+fn ahead<const REVERSED: u32>(lhb: &LhbData<'_>, query: &LhbQuery, place: &Place) -> LhbElement {
+    let (mut begin, mut end) = (place.begin as usize, place.end as usize);
+    while begin < end {
+        let count = (end - begin).min(GROUP);
+        let from = if REVERSED == 0 { begin } else { end - count };
+        let mut group = [NOTHING; GROUP];
+        // The copy of a whole group is one load. What follows the list is masked.
+        match lhb.elements.get(from..from + GROUP) {
+            Some(elements) => group.copy_from_slice(elements),
+            None => group[..count].copy_from_slice(lhb.elements.get(from..from + count).unwrap_or_default()),
         }
-        let seen = LhbElement { surface: element.surface ^ reversed, depth: element.depth };
-        if beyond > window || is_entered(lhb, query, seen.surface) {
-            return seen;
+        let (beyond, candidates) = sorted_out::<REVERSED>(query, place.z, &group);
+        let mut left = (beyond | candidates) & ((1 << count) - 1);
+        while left != 0 {
+            let i = if REVERSED == 0 { left.trailing_zeros() } else { 31 - left.leading_zeros() };
+            let LhbElement { surface, depth } = group[i as usize];
+            let seen = LhbElement { surface: surface ^ REVERSED, depth };
+            if beyond >> i & 1 == 1 || is_before(lhb, query, seen.surface) {
+                return seen;
+            }
+            left &= !(1 << i);
+        }
+        if REVERSED == 0 {
+            begin += count;
+        } else {
+            end -= count;
         }
     }
     NOTHING
 }
 
-/// Whether the query's position is before the plane of a surface, on the side that it shows, and that is the side that the
-/// query left its own surface on.
+/// Which elements lie beyond the window, and which lie in it, are not of the triangle that is left, and show the side that was
+/// left.
 #[inline(always)]
-fn is_entered(lhb: &LhbData<'_>, query: &LhbQuery, surface: u32) -> bool {
-    if (surface ^ query.leaves) & 1 != 0 || surface >> 1 == query.leaves >> 1 {
-        return false;
+fn sorted_out<const REVERSED: u32>(query: &LhbQuery, z: i32, group: &[LhbElement; GROUP]) -> (u32, u32) {
+    let window = query.window as i32;
+    let (mut beyond, mut candidates) = (0, 0);
+    for (i, element) in group.iter().enumerate() {
+        let ahead = if REVERSED == 0 { element.depth as i32 - z } else { z - element.depth as i32 };
+        let changed = element.surface ^ REVERSED ^ query.leaves;
+        let is_candidate = (ahead >= -window) & (changed & 1 == 0) & (changed >> 1 != 0);
+        beyond |= u32::from(ahead > window) << i;
+        candidates |= u32::from(is_candidate) << i;
     }
+    (beyond, candidates)
+}
+
+/// Whether the query's position is before the plane of a surface, on the side that it shows.
+#[inline(always)]
+fn is_before(lhb: &LhbData<'_>, query: &LhbQuery, surface: u32) -> bool {
     let Some(plane) = lhb.planes.get((surface >> 1) as usize) else { return false };
     let [x, y, z] = plane.normal.map(i32::from);
     let side = dot([x, y, z, 0], query.position).wrapping_sub(plane.offset);

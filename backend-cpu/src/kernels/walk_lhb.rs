@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::LhbElement;
 use twinlight_core::kernels::trace_paths::FilmTexel;
-use twinlight_core::kernels::walk_lhb::{CONE, WalkLhbParams};
+use twinlight_core::kernels::walk_lhb::{CONE, TRACE_MISSES, WalkLhbParams};
 use twinlight_core::math::hash::mix_pair;
 use twinlight_core::math::octahedral::nearest_direction;
 use twinlight_core::scene::NONE;
@@ -230,7 +230,12 @@ impl<W: Width> Wave<'_, W> {
             let Walker { path, ray, .. } = &walkers[index as usize];
             let view = &lhb.views[(ray >> 1) as usize];
             let hit = lhb_hit(lookup, &self.scene, view, query, path.origin, path.direction, *found, cone);
-            met[index as usize] = Met { slot: hit.slot, u: hit.u, v: hit.v, t: hit.t };
+            let is_traced = hit.slot == NONE && lookup.flags & TRACE_MISSES != 0;
+            met[index as usize] = if is_traced {
+                self.traced(&walkers[index as usize])
+            } else {
+                Met { slot: hit.slot, u: hit.u, v: hit.v, t: hit.t }
+            };
         }
     }
 }

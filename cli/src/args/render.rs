@@ -151,6 +151,22 @@ impl std::str::FromStr for Layers {
     }
 }
 
+/// What `--show` draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Show {
+    /// A view of the layered hit buffers.
+    Lhb(u32),
+}
+
+impl std::str::FromStr for Show {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let view = text.strip_prefix("lhb:").and_then(|view| view.parse().ok());
+        view.map(Self::Lhb).ok_or_else(|| "not of the form lhb:VIEW, such as lhb:0".into())
+    }
+}
+
 /// Cone approximation of lookups.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ConeName {
@@ -160,22 +176,34 @@ pub enum ConeName {
     Off,
 }
 
+/// Rays that lookups find nothing for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MissesName {
+    /// They are traced: lines beside a silhouette lose light
+    Trace,
+    /// They leave the scene
+    Leave,
+}
+
 /// Knobs of the method slhb.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Method slhb")]
 pub struct SlhbArgs {
     /// Directions that hit buffers are built for: a number, or icosahedron:N, octahedron:N, halton:N, uv:ROWSxCOLUMNS
-    #[arg(long, value_name = "SET", default_value = "320", value_parser = direction_set)]
+    #[arg(long, value_name = "SET", env = "TWINLIGHT_DIRECTIONS", default_value = "320", value_parser = direction_set)]
     pub directions: DirectionSet,
     /// Pixels per row and column of a hit buffer, 1 to 1024
-    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(long, value_name = "N", env = "TWINLIGHT_LHB_SIZE", default_value_t = 128, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub lhb_size: u32,
     /// Surfaces that a pixel of a hit buffer keeps: all, or the nearest N
-    #[arg(long, value_name = "N", default_value = "all")]
+    #[arg(long, value_name = "N", env = "TWINLIGHT_LAYERS", default_value = "all")]
     pub layers: Layers,
     /// Whether lookups follow the ray or its nearest direction alone
-    #[arg(long, value_name = "HOW", default_value = "auto")]
+    #[arg(long, value_name = "HOW", env = "TWINLIGHT_CONE", default_value = "auto")]
     pub cone: ConeName,
+    /// What becomes of rays that lookups find nothing for
+    #[arg(long, value_name = "HOW", env = "TWINLIGHT_MISSES", default_value = "trace")]
+    pub misses: MissesName,
 }
 
 fn direction_set(text: &str) -> Result<DirectionSet, String> {
@@ -195,7 +223,7 @@ pub enum ProgressMode {
     Never,
 }
 
-/// Renders a scene by path tracing and writes pictures: PNG to look at, EXR with layers to measure, and a JSON file
+/// Renders a scene and writes pictures: PNG to look at, EXR with layers to measure, and a JSON file
 /// that says how they were made.
 #[derive(Debug, Args)]
 #[command(after_long_help = EXAMPLES, after_help = "`--help` shows examples and explains more.")]
@@ -313,6 +341,9 @@ pub struct RenderArgs {
 
     #[command(flatten)]
     pub slhb: SlhbArgs,
+    /// Instead of rendering, draw what the method works with: lhb:VIEW, a hit buffer's layer counts and layers
+    #[arg(long, value_name = "WHAT", help_heading = "Method slhb")]
+    pub show: Option<Show>,
 
     #[command(flatten)]
     pub load: LoadArgs,

@@ -1,6 +1,6 @@
 //! What to render: flags before the scene's own settings before defaults.
 
-use crate::args::{Bounces, ConeName, MethodName, RenderArgs, Size};
+use crate::args::{Bounces, ConeName, MethodName, MissesName, RenderArgs, Size};
 use crate::exit::{Failure, Stage};
 use crate::source::Prepared;
 use clap::ValueEnum;
@@ -85,6 +85,7 @@ impl Job {
             size: knobs.lhb_size,
             layers: knobs.layers.0,
             cone: knobs.cone == ConeName::Auto,
+            trace_misses: knobs.misses == MissesName::Trace,
         };
         Ok(Self { method, lookups, settings, time, camera })
     }

@@ -8,6 +8,7 @@ mod passes;
 mod progress;
 mod run;
 mod sequence;
+mod show;
 mod sidecar;
 mod studio;
 mod summary;
@@ -33,6 +34,11 @@ use twinlight::methods::post::tonemap;
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let tone = tonemap::Display::new(args.tone.exposure, args.tone.tonemap).map_err(Failure::Pictures)?;
+    if let Some(show) = args.show {
+        let loaded = source::load(&args.scene, &args.load, args.camera.map(|c| c.0))?;
+        let prepared = loaded.at(args.at.unwrap_or(0.0))?;
+        return show::run(args, &prepared, &Job::new(args, &prepared)?, show);
+    }
     let outputs = Outputs::plan(&args.outputs, &source::stem(&args.scene))?;
     let loaded = source::load(&args.scene, &args.load, args.camera.map(|c| c.0))?;
     let moment = match Plan::new(args, &loaded.scene)? {

@@ -81,6 +81,7 @@ pub fn json(
                 "size": job.lookups.size,
                 "layers": job.lookups.layers,
                 "cone": job.lookups.cone,
+                "trace_misses": job.lookups.trace_misses,
             })),
             "size": [settings.width, settings.height],
             "spp": args.spp.or(job.time.is_none().then_some(settings.samples)),

@@ -7,6 +7,7 @@ mod motion;
 mod render;
 mod scene;
 mod signals;
+mod slhb;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -12,7 +12,9 @@
 //!    [`crate::kernels::query_lhb`]'s answer. With [`CONE`], the answer of the line that crosses the ray at that distance
 //!    ([`crate::transport::lhb`]), and the ray is intersected with the triangle so found; without, the hit is where the pixel's line
 //!    meets it, so that light bands.
-//! 2. Rays from the camera, mirrors and glass are traced: their hits are seen sharply. Shadow rays are traced.
+//! 2. Rays from the camera, mirrors and glass are traced: their hits are seen sharply. Shadow rays are traced. With [`TRACE_MISSES`] so
+//!    are rays whose lookup finds nothing: a line that passes beside a silhouette loses light, 3 % of it in a closed room of 70 k
+//!    triangles, though one ray in fifty is concerned.
 //! 3. *Direct light* (area formulation): a looked-up ray that meets an emissive triangle adds nothing, and sampling such a triangle has
 //!    the weight 1: a buffer's resolution says little about whether a small lamp is met. Sphere lights, which a ray
 //!    meets analytically, and the environment, which rays that leave the scene read along ω, keep the balance heuristic.
@@ -37,6 +39,8 @@ pub const ACCURACY: Accuracy = Accuracy::Statistical {
 
 /// [`WalkLhbBlock::flags`]: lines through the ray's hit instead of its start.
 pub const CONE: u32 = 1;
+/// [`WalkLhbBlock::flags`]: rays whose lookup finds nothing are traced.
+pub const TRACE_MISSES: u32 = 2;
 
 /// What lookups need to know of a scene and its buffers.
 #[repr(C)]
@@ -58,7 +62,7 @@ pub struct WalkLhbBlock {
     pub subpixel_bits: u32,
     /// Cells per row of the directional map.
     pub map_resolution: u32,
-    /// [`CONE`] or 0.
+    /// Sum of [`CONE`] and [`TRACE_MISSES`], or 0.
     pub flags: u32,
     /// Unused, 0.
     pub padding: u32,

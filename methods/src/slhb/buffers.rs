@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 use twinlight_core::directions::{DirectionSet, NearestMap};
 use twinlight_core::kernels::rasterize_lhb::{CAP_NEAR, Lhb, PATH_AUTO, RasterizeLhbParams};
-use twinlight_core::kernels::walk_lhb::{CONE, WalkLhbBlock};
+use twinlight_core::kernels::walk_lhb::{CONE, TRACE_MISSES, WalkLhbBlock};
 use twinlight_core::lattice::{Lattice, LatticeMesh, View, subpixel_bits};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, Result};
@@ -19,13 +19,15 @@ pub struct LookupSettings {
     pub layers: Option<u32>,
     /// The cone approximation: without it, light bands.
     pub cone: bool,
+    /// Whether rays that lookups find nothing for are traced, because lines beside a silhouette lose light.
+    pub trace_misses: bool,
 }
 
 impl Default for LookupSettings {
     fn default() -> Self {
         let directions =
             DirectionSet::icosahedron(2).unwrap_or_else(|_| unreachable!("a size that the set has"));
-        Self { directions, size: 128, layers: None, cone: true }
+        Self { directions, size: 128, layers: None, cone: true, trace_misses: true }
     }
 }
 
@@ -92,11 +94,15 @@ pub fn build<B: Backend>(
         size,
         subpixel_bits: subpixel_bits(size),
         map_resolution: map.resolution(),
-        flags: if settings.cone { CONE } else { 0 },
+        flags: flag(settings.cone, CONE) | flag(settings.trace_misses, TRACE_MISSES),
         padding: 0,
     };
     let map = backend.upload(&map.ray_words(&settings.directions))?;
     Ok(Buffers { mesh, lhb, views, map, lookup, build_time })
+}
+
+fn flag(set: bool, bit: u32) -> u32 {
+    if set { bit } else { 0 }
 }
 
 /// sin x for 0 ≤ x ≤ π/2 by its series, to 10⁻⁷: the platform's may differ from machine to machine.

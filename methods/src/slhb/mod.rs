@@ -5,8 +5,10 @@
 //! of directions and pixels. *Source.* Yu, spherical layered hit buffers.
 
 mod buffers;
+mod sheet;
 
 pub use buffers::{Buffers, LookupSettings, build};
+pub use sheet::{Sheet, sheet};
 
 use crate::reference::{Control, Progress, Rendered, Settings, accumulate};
 use twinlight_core::kernels::trace_paths::TracePathsParams;

@@ -1,22 +1,22 @@
-//! The order in which walkers take their next step: those that are traced, then by view.
+//! The order in which walkers look up: after those that are traced, by view, along it and against it.
 
 use super::{ENDED, TRACED, Walker};
 
 /// A counting sort of the walkers that go on.
 pub(super) struct Order {
-    /// One more than views, and one for the end.
+    /// One for those that are traced, two per view, and one for the end.
     begins: Vec<u32>,
     walkers: Vec<u32>,
 }
 
 impl Order {
     pub(super) fn new(walkers: usize, views: usize) -> Self {
-        Self { begins: vec![0; views + 2], walkers: vec![0; walkers] }
+        Self { begins: vec![0; 2 * views + 2], walkers: vec![0; walkers] }
     }
 
     #[inline(always)]
     fn bin(walker: &Walker) -> usize {
-        if walker.ray == TRACED { 0 } else { (walker.ray >> 1) as usize + 1 }
+        if walker.ray == TRACED { 0 } else { walker.ray as usize + 1 }
     }
 
     #[inline(always)]

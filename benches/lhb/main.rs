@@ -1,0 +1,76 @@
+//! Layered hit buffers: triangle-views per second, what an element costs beside writing it to memory, and lookups beside
+//! traced rays.
+//!
+//! `cargo bench -p twinlight --bench lhb -- [SCENE…] [--directions N] [--size N] [--rounds N] [--path 0..4]`
+//!
+//! Builds draw a view per direction, though opposite directions share one: that is the work that is compared. The floor is
+//! filling as many bytes of the same vector from the same threads, in turn with the builds. Lookups are cosine-weighted rays
+//! from random points of the scene's surfaces, in the order of their directions; the rays traced beside them are the same.
+
+#[path = "../../backend-cpu/benches/trace/clock.rs"]
+mod clock;
+mod queries;
+
+mod build;
+
+use twinlight::cpu::CpuBackend;
+use twinlight::directions::DirectionSet;
+use twinlight::methods::slhb::LookupSettings;
+use twinlight::scene::{Limits, compile};
+use twinlight::{Backend, io};
+
+/// Lookups and rays that are timed.
+const QUERIES: usize = 1 << 22;
+
+struct Arguments {
+    scenes: Vec<String>,
+    directions: DirectionSet,
+    size: u32,
+    rounds: usize,
+    path: u32,
+}
+
+fn arguments() -> Result<Arguments, Box<dyn std::error::Error>> {
+    let mut parsed =
+        Arguments { scenes: Vec::new(), directions: "320".parse()?, size: 128, rounds: 5, path: 0 };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let mut value = || words.next().ok_or_else(|| format!("{word} needs a value"));
+        match word.as_str() {
+            "--directions" => parsed.directions = value()?.parse()?,
+            "--size" => parsed.size = value()?.parse()?,
+            "--rounds" => parsed.rounds = value()?.parse::<usize>()?.max(1),
+            "--path" => parsed.path = value()?.parse()?,
+            "--bench" => {}
+            _ => parsed.scenes.push(word),
+        }
+    }
+    if parsed.scenes.is_empty() {
+        parsed.scenes = ["builtin:room-70k", "builtin:room-1m"].map(String::from).to_vec();
+    }
+    Ok(parsed)
+}
+
+/// Median, least and greatest.
+fn spread(mut values: Vec<f64>) -> (f64, f64, f64) {
+    values.sort_by(f64::total_cmp);
+    (values[values.len() / 2], values[0], values[values.len() - 1])
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments = arguments()?;
+    let backend = CpuBackend::new();
+    for name in &arguments.scenes {
+        let scene = compile(&io::load(name, &io::LoadOptions::default())?, &Limits::default())?;
+        println!("{name}: {} triangles, {} threads", scene.triangles.len(), backend.threads());
+        build::time(&backend, &scene, &arguments)?;
+        let settings = LookupSettings {
+            directions: arguments.directions.clone(),
+            size: arguments.size,
+            ..LookupSettings::default()
+        };
+        let resident = backend.upload_scene(&scene)?;
+        queries::time(&backend, &scene, &resident, &settings, arguments.rounds)?;
+    }
+    Ok(())
+}

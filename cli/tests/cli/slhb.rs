@@ -1,0 +1,59 @@
+use crate::Folder;
+use twinlight::io::image::read_rgb;
+use twinlight::scene::Limits;
+
+const SMALL: [&str; 8] = ["--size", "16x16", "--spp", "2", "--backend", "cpu", "--directions", "20"];
+
+#[test]
+fn slhb_renders_and_says_what_it_built() {
+    let folder = Folder::new();
+    let arguments = ["render", "builtin:cornell", "--method", "slhb", "--lhb-size", "16", "--cone", "off"];
+    folder.run(&[&arguments[..], &SMALL].concat()).ok();
+    let sidecar: serde_json::Value = serde_json::from_slice(&folder.read("cornell.json")).unwrap();
+    assert_eq!(sidecar["settings"]["method"], "slhb");
+    let knobs = serde_json::json!({
+        "directions": "icosahedron:20", "size": 16, "layers": null, "cone": false, "trace_misses": true
+    });
+    assert_eq!(sidecar["settings"]["slhb"], knobs);
+    assert_eq!(sidecar["result"]["lhb_views"], 10);
+    assert!(sidecar["result"]["lhb_elements"].as_u64().unwrap() > 100);
+    assert!(sidecar["seconds"]["rasterize_lhb"].as_f64().unwrap() > 0.0);
+    assert!(sidecar["seconds"]["walk_lhb"].as_f64().unwrap() > 0.0);
+    assert!(sidecar["seconds"]["trace_paths"].is_null());
+}
+
+/// A scene file names the method too, and a scene without triangles has buffers without elements.
+#[test]
+fn scene_files_choose_the_method() {
+    let folder = Folder::new();
+    let room = "[render]\nmethod = \"slhb\"\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\n";
+    folder.write("room.toml", room);
+    folder.run(&[&["render", "room.toml"], &SMALL[..]].concat()).ok();
+    let sidecar: serde_json::Value = serde_json::from_slice(&folder.read("room.json")).unwrap();
+    assert_eq!(
+        (&sidecar["settings"]["method"], &sidecar["result"]["lhb_elements"]),
+        (&"slhb".into(), &0.into())
+    );
+    folder.write("room.toml", &room.replace("slhb", "radiosity"));
+    let failed = folder.run(&[&["render", "room.toml"], &SMALL[..]].concat());
+    assert!(failed.stderr.contains("no method is called 'radiosity'"), "{}", failed.stderr);
+}
+
+#[test]
+fn show_draws_a_hit_buffer() {
+    let folder = Folder::new();
+    let arguments =
+        ["render", "builtin:cornell", "--directions", "20", "--lhb-size", "24", "--show", "lhb:4"];
+    let run = folder.run(&arguments).ok();
+    assert_eq!(run.stdout, "cornell-lhb.png\n");
+    assert!(run.stderr.starts_with("view 4 of 10 along "), "{}", run.stderr);
+    let png = read_rgb(&folder.read("cornell-lhb.png"), "png", &Limits::default()).unwrap();
+    assert_eq!((png.width, png.height), (8 * 24, 24));
+    for (wrong, text) in [("lhb:10", "there are 10 views"), ("voxels", "not of the form lhb:VIEW")] {
+        let arguments = ["render", "builtin:cornell", "--directions", "20", "--show", wrong];
+        let failed = folder.run(&arguments);
+        assert!(failed.stderr.contains(text), "{}", failed.stderr);
+    }
+    let two = ["render", "builtin:cornell", "--show", "lhb:0", "-o", "a.png", "-o", "b.png"];
+    assert!(folder.run(&two).stderr.contains("--show draws one picture"));
+}
