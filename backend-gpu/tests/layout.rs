@@ -222,6 +222,7 @@ fn twins() -> Vec<Twins> {
             ])),
             constants: with_lookup_constants(with_path_constants(vec![
                 ("CONE", walk_contract::CONE.into()),
+                ("TRACE_MISSES", walk_contract::TRACE_MISSES.into()),
                 ("FINE", lhb::FINE.into()),
                 ("COARSE", lhb::COARSE.into()),
                 ("ACROSS", lhb::ACROSS.into()),

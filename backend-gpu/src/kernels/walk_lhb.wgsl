@@ -13,6 +13,7 @@ const WORKGROUP_SIZE: u32 = 64u;
 const EMITTERS_ARE_MET: bool = false;
 
 const CONE: u32 = 1u;
+const TRACE_MISSES: u32 = 2u;
 
 // Walker.leaves of a ray from the camera, a mirror or glass.
 const TRACED: u32 = 0xffffffffu;
@@ -68,20 +69,21 @@ fn extend_paths(
     let sample = params.call.sample_begin + index / params.call.pixel_count;
     let draws = Draws(mix_pair(params.call.seed, pixel), sample);
     var path: PathState;
-    var leaves = TRACED;
+    var hit = SlotHit(FAR, 0.0f, 0.0f, NONE);
+    var is_traced = true;
     if params.segment == 0u {
         // [1] sample: a point of the pixel
         path = start_path(draws, pixel);
     } else {
         path = paths[index].path;
-        leaves = paths[index].leaves;
+        if paths[index].leaves != TRACED {
+            hit = SlotHit(paths[index].t, paths[index].u, paths[index].v, paths[index].slot);
+            is_traced = hit.slot == NONE && (params.lookup.flags & TRACE_MISSES) != 0u;
+        }
     }
     // [2] vertex: what the ray meets, and its emission
-    var hit: SlotHit;
-    if leaves == TRACED {
+    if is_traced {
         hit = closest(path.origin, path.direction, 0.0f, FAR);
-    } else {
-        hit = SlotHit(paths[index].t, paths[index].u, paths[index].v, paths[index].slot);
     }
     // [3] direct light
     // [4] scatter

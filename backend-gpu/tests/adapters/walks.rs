@@ -19,13 +19,9 @@ pub const CHECKS: &[(&str, Check)] = &[
     ("walks in what doesn't belong together are refused", strangers),
 ];
 
-fn lookups(cone: bool) -> Result<LookupSettings, Failed> {
-    Ok(LookupSettings {
-        directions: DirectionSet::octahedron(2)?,
-        size: 40,
-        cone,
-        ..LookupSettings::default()
-    })
+fn lookups(cone: bool, trace_misses: bool) -> Result<LookupSettings, Failed> {
+    let directions = DirectionSet::octahedron(2)?;
+    Ok(LookupSettings { directions, size: 40, cone, trace_misses, ..LookupSettings::default() })
 }
 
 /// On `backend`, with lists that the CPU rasterizes: they are the same, and come sooner.
@@ -54,17 +50,17 @@ fn film<B: Backend>(
 
 fn walks(target: &Target) -> Result<(), Failed> {
     let gpu = GpuBackend::new(target.device()?.clone());
-    for (name, bounces, cone) in [
-        ("cornell", 3, false),
-        ("cornell", UNLIMITED_BOUNCES, true),
-        ("materials", 5, true),
-        ("lights", 2, true),
-        ("textured", 4, true),
-        ("environment", 3, true),
-        ("axis", 0, true),
+    for (name, bounces, cone, trace_misses) in [
+        ("cornell", 3, false, false),
+        ("cornell", UNLIMITED_BOUNCES, true, true),
+        ("materials", 5, true, false),
+        ("lights", 2, true, true),
+        ("textured", 4, true, true),
+        ("environment", 3, true, true),
+        ("axis", 0, true, true),
     ] {
         let pair = Pair::new(name)?;
-        let (lookups, call) = (lookups(cone)?, pair.paths(bounces)?);
+        let (lookups, call) = (lookups(cone, trace_misses)?, pair.paths(bounces)?);
         let want = film(&CpuBackend::new(), &pair, &lookups, call)?;
         let got = film(&gpu, &pair, &lookups, call)?;
         expect_twin_films(target, &pair, &call, &FILMS, [&got, &want])?;
@@ -78,7 +74,8 @@ fn batches(target: &Target) -> Result<(), Failed> {
     let small = GpuBackend::new(GpuDevice::open(&options)?);
     let gpu = GpuBackend::new(target.device()?.clone());
     let pair = Pair::new("cornell")?;
-    let lookups = LookupSettings { size: 8, directions: DirectionSet::octahedron(1)?, ..lookups(true)? };
+    let lookups =
+        LookupSettings { size: 8, directions: DirectionSet::octahedron(1)?, ..lookups(true, true)? };
     for sample_count in [1, 5, 600] {
         let call = TracePathsParams { sample_count, pixel_count: 1200 / sample_count, ..pair.paths(2)? };
         let call = TracePathsParams { width: 48, height: 32, ..call };
@@ -92,7 +89,7 @@ fn strangers(target: &Target) -> Result<(), Failed> {
     let gpu = GpuBackend::new(target.device()?.clone());
     let pair = Pair::new("cornell")?;
     let scene = gpu.upload_scene(&pair.compiled)?;
-    let Buffers { mesh, lhb, views, map, lookup, .. } = build(&gpu, &pair.compiled, &lookups(true)?)?;
+    let Buffers { mesh, lhb, views, map, lookup, .. } = build(&gpu, &pair.compiled, &lookups(true, false)?)?;
     let params = WalkLhbParams { call: pair.paths(1)?, lookup };
     let mut film = gpu.zeroed((params.call.width * params.call.height) as usize)?;
     let mut other_size = params;
