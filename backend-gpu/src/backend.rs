@@ -2,7 +2,7 @@
 
 use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
-use crate::kernels::{query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths};
+use crate::kernels::{query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths, walk_lhb};
 use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
 use crate::strict::Mode;
@@ -162,7 +162,6 @@ impl Backend for GpuBackend {
         params: &WalkLhbParams,
         film: &mut GpuBuffer<FilmTexel>,
     ) -> Result<()> {
-        let _ = (scene, mesh, lhb, views, map, params, film);
-        Err(twinlight_core::Error::Unsupported("walk_lhb".into()))
+        walk_lhb::run(&self.device, scene, mesh, lhb, views, map, params, film)
     }
 }

@@ -4,28 +4,31 @@ use crate::buffer::{BufferRef, GpuBuffer};
 use crate::device::GpuDevice;
 use crate::scene::upload;
 use twinlight_core::Result;
-use twinlight_core::lattice::LatticeMesh;
+use twinlight_core::lattice::{LatticeMesh, LatticePlane};
 
-/// A resident mesh: the buffers that `shared/lattice.wgsl` binds, under the same names.
+/// A resident mesh.
 #[derive(Debug)]
 pub struct GpuMesh {
     vertices: GpuBuffer<[u32; 2]>,
     triangles: GpuBuffer<[u32; 3]>,
+    planes: GpuBuffer<LatticePlane>,
     vertex_count: u32,
     triangle_count: u32,
 }
 
 impl GpuMesh {
-    /// Uploads vertices and triangles.
+    /// Uploads vertices, triangles and their planes.
     ///
     /// # Errors
     /// [`twinlight_core::Error::LimitExceeded`] for more of either than a binding holds,
     /// [`twinlight_core::Error::OutOfMemory`].
     pub fn new(device: &GpuDevice, mesh: &LatticeMesh) -> Result<Self> {
         let vertices: Vec<[u32; 2]> = mesh.vertices().iter().map(|&v| packed(v)).collect();
+        let planes: Vec<_> = mesh.planes().collect();
         Ok(Self {
             vertices: upload(device, "vertices", &vertices)?,
             triangles: upload(device, "triangles", mesh.triangles())?,
+            planes: upload(device, "planes", &planes)?,
             vertex_count: vertices.len() as u32,
             triangle_count: mesh.triangles().len() as u32,
         })
@@ -47,6 +50,10 @@ impl GpuMesh {
 
     pub(crate) fn triangles(&self) -> BufferRef<'_> {
         self.triangles.binding()
+    }
+
+    pub(crate) fn planes(&self) -> BufferRef<'_> {
+        self.planes.binding()
     }
 }
 

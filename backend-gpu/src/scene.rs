@@ -18,6 +18,8 @@ pub struct GpuScene {
     materials: GpuBuffer<MaterialRecord>,
     lights: GpuBuffer<LightRecord>,
     words: GpuBuffer<u32>,
+    /// Number of triangles.
+    pub(crate) triangle_count: u32,
     /// For the parameters of kernels that sample lights.
     pub environment: EnvironmentHeader,
 }
@@ -42,6 +44,7 @@ impl GpuScene {
             materials: upload(device, "materials", &scene.materials)?,
             lights: upload(device, "lights", &scene.lights)?,
             words: upload(device, "textures", &scene.words)?,
+            triangle_count: scene.triangles.len() as u32,
             environment: scene.environment,
         })
     }

@@ -28,14 +28,20 @@ shared! {
     HASH = "hash";
     /// Twin of `transport::intersect`.
     INTERSECT = "intersect";
-    /// Twin of `lattice`, and the bindings of meshes and views.
+    /// Twin of `lattice`.
     LATTICE = "lattice";
+    /// Twin of `transport::lhb`; wants `shared/look_up.wgsl` and the scene's triangles.
+    LHB = "lhb";
     /// Twin of `transport::light`; wants `params.environment`.
     LIGHT = "light";
+    /// What a lookup in layered hit buffers meets, and the bindings of them; wants `params.lhb`.
+    LOOK_UP = "look_up";
     /// Twin of `math::octahedral`; wants a global `nearest_map: array<u32>`.
     OCTAHEDRAL = "octahedral";
     /// Twin of `transport::offset`.
     OFFSET = "offset";
+    /// What the kernels that follow paths share; wants `params.call`, `params.environment` and `EMITTERS_ARE_MET`.
+    PATH = "path";
     /// Twin of `scene::compiled`, and the scene's bindings.
     SCENE = "scene";
     /// Twin of `math::sobol`.

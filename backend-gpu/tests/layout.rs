@@ -4,13 +4,15 @@
 //! is misspelt; one that is left out shows as a WGSL field that nothing answers to.
 
 use std::mem::{offset_of, size_of};
-use twinlight_backend_gpu::kernels::{self, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths};
+use twinlight_backend_gpu::kernels::{
+    self, path, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths, walk_lhb,
+};
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
-    rasterize_lhb as lhb_contract, shade_primary as shade_contract, trace as trace_contract,
-    trace_paths as paths_contract,
+    query_lhb as query_contract, rasterize_lhb as lhb_contract, shade_primary as shade_contract,
+    trace as trace_contract, trace_paths as paths_contract, walk_lhb as walk_contract,
 };
-use twinlight_core::transport::{intersect, light};
+use twinlight_core::transport::{intersect, lhb, light};
 use twinlight_core::{bvh, lattice, math, scene, transport};
 
 /// A Rust struct: name, size, and its fields with their offsets.
@@ -43,12 +45,19 @@ struct Twins {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Constant {
     U32(u32),
+    I32(i32),
     F32(f32),
 }
 
 impl From<u32> for Constant {
     fn from(value: u32) -> Self {
         Self::U32(value)
+    }
+}
+
+impl From<i32> for Constant {
+    fn from(value: i32) -> Self {
+        Self::I32(value)
     }
 }
 
@@ -126,6 +135,16 @@ fn twins() -> Vec<Twins> {
             ],
         },
         Twins {
+            source: &query_lhb::SOURCE,
+            structs: with_lookups(vec![layout!(query_lhb::QueryLhbBlock {
+                lhb,
+                query_count,
+                loop_rounds,
+                padding,
+            })]),
+            constants: with_lookup_constants(vec![("WORKGROUP_SIZE", query_lhb::WORKGROUP_SIZE.into())]),
+        },
+        Twins {
             source: &trace::SOURCE,
             structs: with_scene(vec![
                 layout!(trace::TraceParams { ray_count, loop_rounds }),
@@ -161,45 +180,56 @@ fn twins() -> Vec<Twins> {
         },
         Twins {
             source: &trace_paths::SOURCE,
-            structs: with_camera(vec![
-                layout!(trace_paths::TracePathsBlock {
+            structs: with_paths(vec![layout!(trace_paths::TracePathsBlock {
+                call,
+                environment,
+                segment,
+                alive_word,
+                loop_rounds,
+                film_begin,
+            })]),
+            constants: with_path_constants(vec![(
+                "VERTICES_PER_DISPATCH",
+                trace_paths::VERTICES_PER_DISPATCH.into(),
+            )]),
+        },
+        Twins {
+            source: &walk_lhb::SOURCE,
+            structs: with_lookups(with_paths(vec![
+                layout!(walk_lhb::WalkLhbParams {
                     call,
+                    lookup,
                     environment,
+                    lhb,
                     segment,
                     alive_word,
                     loop_rounds,
                     film_begin,
                 }),
-                layout!(trace_paths::PathState {
-                    origin,
-                    pdf,
-                    direction,
-                    vertices,
-                    throughput,
-                    alive,
-                    direct,
-                    padding_a,
-                    indirect,
-                    padding_b,
+                layout!(walk_lhb::Walker { path, normal, leaves, slot, u, v, t }),
+                layout!(walk_contract::WalkLhbBlock {
+                    centre,
+                    steps_per_unit,
+                    unit_per_step,
+                    row_scale,
+                    lift,
+                    size,
+                    subpixel_bits,
+                    map_resolution,
+                    flags,
+                    padding,
                 }),
-                layout!(paths_contract::TracePathsParams {
-                    camera, width, height, pixel_begin, pixel_count, sample_begin, sample_count, seed, max_bounces,
-                    roulette_begin, sampler as sampler_kind, film_exponent, moment_exponent,
-                }),
-                layout!(paths_contract::FilmTexel { direct, indirect, luminance_squared, samples, rejected }),
-            ]),
-            constants: with_lights(vec![
-                ("WORKGROUP_SIZE", trace_paths::WORKGROUP_SIZE.into()),
-                ("VERTICES_PER_DISPATCH", trace_paths::VERTICES_PER_DISPATCH.into()),
-                ("SAMPLER_SOBOL", paths_contract::SAMPLER_SOBOL.into()),
-                ("PAIRS_PER_VERTEX", paths_contract::PAIRS_PER_VERTEX.into()),
-                ("MAX_SURVIVAL", paths_contract::MAX_SURVIVAL.into()),
-                ("INV_PI", transport::INV_PI.into()),
-                ("MATERIAL_OPAQUE", scene::MATERIAL_OPAQUE.into()),
-                ("MATERIAL_MIRROR", scene::MATERIAL_MIRROR.into()),
-                ("MATERIAL_DIELECTRIC", scene::MATERIAL_DIELECTRIC.into()),
-                ("OUT_OF_RANGE", math::fixed::OUT_OF_RANGE[0].into()),
-            ]),
+            ])),
+            constants: with_lookup_constants(with_path_constants(vec![
+                ("CONE", walk_contract::CONE.into()),
+                ("TRACE_MISSES", walk_contract::TRACE_MISSES.into()),
+                ("FINE", lhb::FINE.into()),
+                ("COARSE", lhb::COARSE.into()),
+                ("ACROSS", lhb::ACROSS.into()),
+                ("HALF_DIAGONAL", lhb::HALF_DIAGONAL.into()),
+                ("LEAST_SLOPE", lhb::LEAST_SLOPE.into()),
+                ("GREATEST_SLOPE", lhb::GREATEST_SLOPE.into()),
+            ])),
         },
     ]
 }
@@ -242,6 +272,44 @@ fn with_camera(mut structs: Vec<Layout>) -> Vec<Layout> {
     with_scene(structs)
 }
 
+/// Those, and the structs of `shared/path.wgsl`.
+fn with_paths(mut structs: Vec<Layout>) -> Vec<Layout> {
+    structs.extend([
+        layout!(path::PathState {
+            origin,
+            pdf,
+            direction,
+            vertices,
+            throughput,
+            alive,
+            direct,
+            padding_a,
+            indirect,
+            padding_b,
+        }),
+        layout!(paths_contract::TracePathsParams {
+            camera, width, height, pixel_begin, pixel_count, sample_begin, sample_count, seed, max_bounces,
+            roulette_begin, sampler as sampler_kind, film_exponent, moment_exponent,
+        }),
+        layout!(paths_contract::FilmTexel { direct, indirect, luminance_squared, samples, rejected }),
+    ]);
+    with_camera(structs)
+}
+
+/// The structs of `shared/look_up.wgsl`.
+fn with_lookups(mut structs: Vec<Layout>) -> Vec<Layout> {
+    // WGSL has no numbers of 16 bits.
+    let plane = layout!(lattice::LatticePlane { offset });
+    structs.extend([
+        layout!(query_lhb::LhbHeader { size, view_count, element_count, plane_count }),
+        layout!(query_contract::LhbQuery { position, ray, offset, leaves, window }),
+        layout!(lhb_contract::LhbElement { surface, depth }),
+        layout!(lattice::View { right, down, forward }),
+        Layout { fields: [vec![("normal_xy", 0), ("normal_z", 4)], plane.fields].concat(), ..plane },
+    ]);
+    structs
+}
+
 type Constants = Vec<(&'static str, Constant)>;
 
 /// The constants of `shared/intersect.wgsl` and `shared/traverse.wgsl`.
@@ -276,6 +344,32 @@ fn with_lights(mut constants: Constants) -> Constants {
         ("LIGHT_ENVIRONMENT", scene::LIGHT_ENVIRONMENT.into()),
     ]);
     with_intersection(constants)
+}
+
+/// Those, and the constants of `shared/path.wgsl` and `shared/bsdf.wgsl`.
+fn with_path_constants(mut constants: Constants) -> Constants {
+    constants.extend([
+        ("WORKGROUP_SIZE", path::WORKGROUP_SIZE.into()),
+        ("SAMPLER_SOBOL", paths_contract::SAMPLER_SOBOL.into()),
+        ("PAIRS_PER_VERTEX", paths_contract::PAIRS_PER_VERTEX.into()),
+        ("MAX_SURVIVAL", paths_contract::MAX_SURVIVAL.into()),
+        ("INV_PI", transport::INV_PI.into()),
+        ("MATERIAL_OPAQUE", scene::MATERIAL_OPAQUE.into()),
+        ("MATERIAL_MIRROR", scene::MATERIAL_MIRROR.into()),
+        ("MATERIAL_DIELECTRIC", scene::MATERIAL_DIELECTRIC.into()),
+        ("OUT_OF_RANGE", math::fixed::OUT_OF_RANGE[0].into()),
+    ]);
+    with_lights(constants)
+}
+
+/// The constants of `shared/look_up.wgsl`.
+fn with_lookup_constants(mut constants: Constants) -> Constants {
+    constants.extend([
+        ("DEPTH_ORIGIN", (lattice::DEPTH_ORIGIN as u32).into()),
+        ("CLEARANCE", query_contract::CLEARANCE.into()),
+        ("NO_ELEMENT", query_contract::NO_ELEMENT.into()),
+    ]);
+    constants
 }
 
 #[test]
@@ -357,11 +451,11 @@ const WIDTH: f32 = 0.1f;
     for (result, expected) in wrong {
         assert_eq!(result, Err(format!("Probe: {expected}")));
     }
-    assert_eq!(compare_constant(&checked, "SIZE", 3.into()), Ok(()));
-    assert_eq!(compare_constant(&checked, "WIDTH", 0.1.into()), Ok(()));
-    assert!(compare_constant(&checked, "SIZE", 4.into()).is_err());
+    assert_eq!(compare_constant(&checked, "SIZE", 3_u32.into()), Ok(()));
+    assert_eq!(compare_constant(&checked, "WIDTH", 0.1_f32.into()), Ok(()));
+    assert!(compare_constant(&checked, "SIZE", 4_u32.into()).is_err());
     assert!(compare_constant(&checked, "WIDTH", 0.1_f32.next_up().into()).is_err());
-    assert!(compare_constant(&checked, "ABSENT", 4.into()).is_err());
+    assert!(compare_constant(&checked, "ABSENT", 4_u32.into()).is_err());
 }
 
 fn compare_struct(checked: &CheckedModule, layout: &Layout) -> Result<(), String> {
@@ -404,6 +498,7 @@ fn compare_constant(checked: &CheckedModule, name: &str, value: Constant) -> Res
     }
     match (&module.global_expressions[init], value) {
         (naga::Expression::Literal(naga::Literal::U32(wgsl)), Constant::U32(rust)) if *wgsl == rust => Ok(()),
+        (naga::Expression::Literal(naga::Literal::I32(wgsl)), Constant::I32(rust)) if *wgsl == rust => Ok(()),
         (naga::Expression::Literal(naga::Literal::F32(wgsl)), Constant::F32(rust))
             if wgsl.to_bits() == rust.to_bits() =>
         {

@@ -192,7 +192,7 @@ impl<W: Width> Wave<'_, W> {
         Met { slot: hit.slot, u: hit.u, v: hit.v, t: hit.t }
     }
 
-    /// [6] direction: the nearest that leaves the surface
+    // [6] direction: the nearest that leaves the surface
     #[inline(always)]
     fn nearest_ray(&self, walker: &Walker) -> u32 {
         let (map, lookup) = (self.lookups.map, &self.params.lookup);
@@ -205,7 +205,7 @@ impl<W: Width> Wave<'_, W> {
         nearest_direction(map, lookup.map_resolution, lifted)
     }
 
-    /// [7] lookup: along the line through the start, then through the hit
+    // [7] lookup: along the line through the start, then through the hit
     #[inline(always)]
     fn look_up(&self, walkers: &[Walker], batch: &[u32], met: &mut [Met]) {
         let (lookup, lhb) = (&self.params.lookup, &self.lookups.lhb);

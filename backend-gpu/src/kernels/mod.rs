@@ -3,6 +3,7 @@
 //! To add one: write the two files, add the module here and its [`KernelSource`] to [`ALL`], and the method to
 //! `backend.rs`. The tests `sources` and `layout` find it through [`ALL`].
 
+pub mod path;
 pub mod query_lhb;
 pub mod rasterize_lhb;
 pub mod scan;
@@ -11,6 +12,7 @@ pub mod sort;
 mod status;
 pub mod trace;
 pub mod trace_paths;
+pub mod walk_lhb;
 
 use crate::source::KernelSource;
 
@@ -19,7 +21,9 @@ pub const ALL: &[&KernelSource] = &[
     &scan::SOURCE,
     &sort::SOURCE,
     &rasterize_lhb::SOURCE,
+    &query_lhb::SOURCE,
     &trace::SOURCE,
     &shade_primary::SOURCE,
     &trace_paths::SOURCE,
+    &walk_lhb::SOURCE,
 ];

@@ -68,6 +68,11 @@ struct LhbElement {
 }
 
 @group(0) @binding(0) var<uniform> params: RasterizeLhbBlock;
+@group(0) @binding(1) var<storage, read> views: array<View>;
+// x and y in the halves of the first word, x in the low one; z in the second.
+@group(0) @binding(2) var<storage, read> vertices: array<vec2<u32>>;
+// Three vertices each.
+@group(0) @binding(3) var<storage, read> triangles: array<u32>;
 // The vertices in the views of the dispatch: x and y in the halves of the first word, x in the low one; z in the second.
 @group(0) @binding(15) var<storage, read_write> projected: array<vec2<u32>>;
 // Items of every pair.
@@ -79,6 +84,11 @@ struct LhbElement {
 @group(0) @binding(7) var<storage, read> offsets: array<u32>;
 @group(0) @binding(8) var<storage, read_write> elements: array<LhbElement>;
 @group(0) @binding(9) var<storage, read_write> status: array<atomic<u32>>;
+
+fn position_of(vertex: u32) -> vec3<i32> {
+    let words = vertices[vertex];
+    return vec3<i32>(i32(words.x << 16u) >> 16u, i32(words.x) >> 16u, i32(words.y));
+}
 
 // The last of `count` starts that is not above `value`.
 fn last_start(value: u32, count: u32) -> u32 {

@@ -16,6 +16,11 @@ pub(crate) fn new(device: &GpuDevice) -> Result<GpuBuffer<u32>> {
     device.zeroed(STATUS_WORDS)
 }
 
+/// Makes a status fresh again.
+pub(crate) fn clear(device: &GpuDevice, status: &GpuBuffer<u32>) -> Result<()> {
+    device.write(status, &[0; STATUS_WORDS])
+}
+
 /// The status after a run.
 ///
 /// # Errors

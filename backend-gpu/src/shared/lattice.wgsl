@@ -1,4 +1,4 @@
-// Twin of `lattice`: views and meshes in integers, and the bindings of them.
+// Twin of `lattice`: views in integers.
 
 const DEPTH_ORIGIN: u32 = 536870912u;
 
@@ -8,19 +8,8 @@ struct View {
     forward: vec4<i32>,
 }
 
-@group(0) @binding(1) var<storage, read> views: array<View>;
-// x and y in the halves of the first word, x in the low one; z in the second.
-@group(0) @binding(2) var<storage, read> vertices: array<vec2<u32>>;
-// Three vertices each.
-@group(0) @binding(3) var<storage, read> triangles: array<u32>;
-
 fn subpixel_bits(size: u32) -> u32 {
     return 15u - (32u - countLeadingZeros(size - 1u));
-}
-
-fn position_of(vertex: u32) -> vec3<i32> {
-    let words = vertices[vertex];
-    return vec3<i32>(i32(words.x << 16u) >> 16u, i32(words.x) >> 16u, i32(words.y));
 }
 
 fn along(row: vec4<i32>, p: vec3<i32>) -> i32 {

@@ -137,7 +137,7 @@ fn expect_lists(
 }
 
 /// Random triangles, the k-th `reach >> k % 8` wide.
-fn soup(seed: u64, triangles: usize, reach: i16) -> LatticeMesh {
+pub fn soup(seed: u64, triangles: usize, reach: i16) -> LatticeMesh {
     let words = numbers(seed, 12 * triangles);
     let mut vertices = Vec::new();
     for (k, words) in words.chunks_exact(12).enumerate() {
@@ -154,7 +154,7 @@ fn soup(seed: u64, triangles: usize, reach: i16) -> LatticeMesh {
     LatticeMesh::new(vertices, triangles).expect("in reach")
 }
 
-fn views(seed: u64, count: usize, size: u32) -> Vec<View> {
+pub fn views(seed: u64, count: usize, size: u32) -> Vec<View> {
     let axes = [DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.0, 0.0, -1.0)];
     let part = |n: u64| (n % 2001) as f64 / 1000.0 - 1.0;
     let random = numbers(seed, 3 * count);
@@ -246,7 +246,7 @@ fn caps(target: &Target) -> Result<(), Failed> {
 }
 
 /// `count` triangles in front of each other that cover the one pixel of a view, in no order of depth.
-fn stack(count: u32) -> LatticeMesh {
+pub fn stack(count: u32) -> LatticeMesh {
     let mut vertices = Vec::new();
     for z in -1000..1000 {
         vertices.extend([[-15_000, -12_000, z], [15_000, -12_000, z], [0, 20_000, z + z % 3]]);

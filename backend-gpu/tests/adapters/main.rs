@@ -5,10 +5,12 @@
 mod chunks;
 mod device;
 mod lhb;
+mod lookups;
 mod scan;
 mod sort;
 mod strict;
 mod transport;
+mod walks;
 mod wide;
 
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -38,10 +40,12 @@ fn main() -> ExitCode {
         chunks::CHECKS,
         device::CHECKS,
         lhb::CHECKS,
+        lookups::CHECKS,
         scan::CHECKS,
         sort::CHECKS,
         strict::CHECKS,
         transport::CHECKS,
+        walks::CHECKS,
         wide::CHECKS,
     ]
     .concat();

@@ -33,7 +33,7 @@ const HEIGHT: u32 = 16;
 const PORTABLE_HITS: f64 = 0.9;
 
 /// How well a film must agree in portable mode, where drivers round as they like while the random numbers are the same.
-struct Tolerance {
+pub struct Tolerance {
     /// Greatest relative difference of a texel's light that counts as rounding.
     light: f64,
     /// Share of the texels that must differ by rounding only; in the others a path may have branched otherwise.
@@ -41,20 +41,20 @@ struct Tolerance {
 }
 
 /// A handful of vertices: of 3800 texels on llvmpipe, the worst was seen to differ by 9.5e-6, 99 % by less than 6e-7.
-const FILMS: Tolerance = Tolerance { light: 1.0 / 65536.0, share: 0.99 };
+pub const FILMS: Tolerance = Tolerance { light: 1.0 / 65536.0, share: 0.99 };
 
 /// 80 vertices and more, at each of which a position's error is carried on to the next wall and grows: on llvmpipe half
 /// of the texels were seen to differ by 8e-5, 5 % by 2e-3, 1 % by 1.1e-2.
 const LONG_PATHS: Tolerance = Tolerance { light: 1.0 / 64.0, share: 0.95 };
 
-struct Pair {
+pub struct Pair {
     name: &'static str,
     scene: Scene,
-    compiled: CompiledScene,
+    pub compiled: CompiledScene,
 }
 
 impl Pair {
-    fn new(name: &'static str) -> Result<Self, Failed> {
+    pub fn new(name: &'static str) -> Result<Self, Failed> {
         let scene = builtin(name).ok_or("no such scene")?;
         let compiled = compile(&scene, &Limits::default())?;
         Ok(Self { name, scene, compiled })
@@ -65,7 +65,7 @@ impl Pair {
         Ok(camera.record(WIDTH, HEIGHT, self.compiled.origin)?)
     }
 
-    fn paths(&self, max_bounces: u32) -> Result<TracePathsParams, Failed> {
+    pub fn paths(&self, max_bounces: u32) -> Result<TracePathsParams, Failed> {
         Ok(TracePathsParams {
             camera: self.camera()?,
             width: WIDTH,
@@ -174,6 +174,17 @@ fn compare_films(
     let gpu = GpuBackend::new(target.device()?.clone());
     let want = film(&CpuBackend::new(), &pair.compiled, params)?;
     let got = film(&gpu, &pair.compiled, params)?;
+    expect_twin_films(target, pair, params, portable, [&got, &want])
+}
+
+/// `got` is `want`: bit for bit in strict mode.
+pub fn expect_twin_films(
+    target: &Target,
+    pair: &Pair,
+    params: &TracePathsParams,
+    portable: &Tolerance,
+    [got, want]: [&[FilmTexel]; 2],
+) -> Result<(), Failed> {
     let begin = params.pixel_begin as usize;
     let samples_done = |texel: &FilmTexel| texel.samples == params.sample_count && texel.rejected == 0;
     if !got[begin..].iter().all(samples_done)
@@ -183,7 +194,7 @@ fn compare_films(
     }
     let what = format!("{} film, {} bounces", pair.name, params.max_bounces);
     if target.device()?.mode() == Mode::Strict {
-        return expect_twins(target, &what, &got, &want, 1.0);
+        return expect_twins(target, &what, got, want, 1.0);
     }
     let texels = || got[begin..].iter().zip(&want[begin..]);
     let differs = |(got, want): &(&FilmTexel, &FilmTexel)| {

@@ -15,17 +15,17 @@ use crate::lattice::{DEPTH_ORIGIN, View};
 use glam::{IVec3, Vec3};
 
 /// 2⁻¹⁴: a unit of a view's rows, and of a depth in steps.
-const FINE: f32 = 6.103_515_6e-5;
+pub const FINE: f32 = 6.103_515_6e-5;
 /// 2¹⁴.
-const COARSE: f32 = 16_384.0;
+pub const COARSE: f32 = 16_384.0;
 /// Steps across the lattice.
-const ACROSS: f32 = 65_536.0;
+pub const ACROSS: f32 = 65_536.0;
 /// √½ of a pixel is from its centre to its corner.
-const HALF_DIAGONAL: f32 = 0.707_106_77;
-/// Slopes that the window allows for at least and at most: what other surfaces may have, and what keeps a window within the
-/// lattice.
-const LEAST_SLOPE: f32 = 4.0;
-const GREATEST_SLOPE: f32 = 64.0;
+pub const HALF_DIAGONAL: f32 = 0.707_106_77;
+/// Slope that the window allows for at least: what other surfaces may have.
+pub const LEAST_SLOPE: f32 = 4.0;
+/// And at most: what keeps a window within the lattice.
+pub const GREATEST_SLOPE: f32 = 64.0;
 
 /// Where a ray meets a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,0 +1,171 @@
+// kernel family: walk_lhb
+// contract core/src/kernels/walk_lhb.rs
+// cpu backend-cpu/src/kernels/walk_lhb.rs
+// gpu backend-gpu/src/kernels/walk_lhb.wgsl
+// oracle conformance/src/oracle/walk_lhb.rs
+//
+// One path per invocation, two dispatches per vertex: extend_paths reads the scene, look_up_rays the layered hit buffers,
+// because together they are more than the eight buffers that every adapter binds. Between them a path rests in `paths`.
+// When all have ended, add_samples adds them to the film, one pixel per invocation.
+
+const WORKGROUP_SIZE: u32 = 64u;
+
+const EMITTERS_ARE_MET: bool = false;
+
+const CONE: u32 = 1u;
+const TRACE_MISSES: u32 = 2u;
+
+// Walker.leaves of a ray from the camera, a mirror or glass.
+const TRACED: u32 = 0xffffffffu;
+
+struct WalkLhbParams {
+    // The pixels and samples of this dispatch.
+    call: TracePathsParams,
+    lookup: WalkLhbBlock,
+    environment: EnvironmentHeader,
+    lhb: LhbHeader,
+    // 0 starts the paths, others go on.
+    segment: u32,
+    // Word of `status` that counts the paths still alive after this dispatch.
+    alive_word: u32,
+    // For loops_run.
+    loop_rounds: u32,
+    // The pixel that `film` begins with.
+    film_begin: u32,
+}
+
+// A path and what a lookup for it needs and finds.
+struct Walker {
+    path: PathState,
+    // Unit normal of what it leaves, on its side.
+    normal: vec3<f32>,
+    // Twice the triangle that it leaves, plus 1 on its front; or TRACED.
+    leaves: u32,
+    // What its ray meets, if that is looked up.
+    slot: u32,
+    u: f32,
+    v: f32,
+    t: f32,
+}
+
+@group(0) @binding(0) var<uniform> params: WalkLhbParams;
+@group(0) @binding(8) var<storage, read_write> paths: array<Walker>;
+@group(0) @binding(14) var<storage, read> nearest_map: array<u32>;
+
+@compute @workgroup_size(64)
+fn extend_paths(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let index = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
+    if index >= params.call.pixel_count * params.call.sample_count {
+        return;
+    }
+    if params.segment > 0u && paths[index].path.alive == 0u {
+        return;
+    }
+    let pixel = params.call.pixel_begin + index % params.call.pixel_count;
+    let sample = params.call.sample_begin + index / params.call.pixel_count;
+    let draws = Draws(mix_pair(params.call.seed, pixel), sample);
+    var path: PathState;
+    var hit = SlotHit(FAR, 0.0f, 0.0f, NONE);
+    var is_traced = true;
+    if params.segment == 0u {
+        // [1] sample: a point of the pixel
+        path = start_path(draws, pixel);
+    } else {
+        path = paths[index].path;
+        if paths[index].leaves != TRACED {
+            hit = SlotHit(paths[index].t, paths[index].u, paths[index].v, paths[index].slot);
+            is_traced = hit.slot == NONE && (params.lookup.flags & TRACE_MISSES) != 0u;
+        }
+    }
+    // [2] vertex: what the ray meets, and its emission
+    if is_traced {
+        hit = closest(path.origin, path.direction, 0.0f, FAR);
+    }
+    // [3] direct light
+    // [4] scatter
+    // [5] roulette
+    let left = visit(&path, hit, draws);
+    path.alive = select(0u, 1u, left.goes_on);
+    paths[index].path = path;
+    if left.goes_on {
+        paths[index].normal = left.normal;
+        paths[index].leaves = select(TRACED, (hit.slot << 1u) | select(0u, 1u, left.front), left.is_opaque);
+        atomicAdd(&status[params.alive_word], 1u);
+    }
+    if !loops_run(params.loop_rounds) {
+        atomicStore(&status[0], 1u);
+    }
+}
+
+@compute @workgroup_size(64)
+fn look_up_rays(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let index = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
+    if index >= params.call.pixel_count * params.call.sample_count {
+        return;
+    }
+    let leaves = paths[index].leaves;
+    if paths[index].path.alive == 0u || leaves == TRACED {
+        return;
+    }
+    let direction = paths[index].path.direction;
+    let normal = paths[index].normal;
+    let hit = met_along(paths[index].path.origin, direction, normal, leaves, nearest_ray(normal, direction));
+    paths[index].slot = hit.slot;
+    paths[index].u = hit.u;
+    paths[index].v = hit.v;
+    paths[index].t = hit.t;
+    if !loops_run(params.loop_rounds) {
+        atomicStore(&status[0], 1u);
+    }
+}
+
+// [6] direction: the nearest that leaves the surface
+fn nearest_ray(normal: vec3<f32>, direction: vec3<f32>) -> u32 {
+    let ray = nearest_direction(params.lookup.map_resolution, direction);
+    if dot_product(normal, ray_direction(views[ray >> 1u], ray)) > 0.0f {
+        return ray;
+    }
+    let lifted = direction + normal * params.lookup.lift;
+    return nearest_direction(params.lookup.map_resolution, lifted);
+}
+
+// [7] lookup: along the line through the start, then through the hit
+fn met_along(origin: vec3<f32>, direction: vec3<f32>, normal: vec3<f32>, leaves: u32, ray: u32) -> LhbHit {
+    let view = views[ray >> 1u];
+    let cone = (params.lookup.flags & CONE) != 0u;
+    var query = lhb_query(params.lookup, view, ray, origin, normal, leaves);
+    var found = look_up(query);
+    if cone {
+        query = lhb_refined(params.lookup, view, query, normal, direction, found);
+        found = look_up(query);
+    }
+    return lhb_hit(params.lookup, view, query, origin, direction, found, cone);
+}
+
+// Adds the samples of this dispatch to their pixels' sums, or counts them as rejected.
+@compute @workgroup_size(64)
+fn add_samples(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let index = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
+    if index >= params.call.pixel_count {
+        return;
+    }
+    let at_film = params.call.pixel_begin + index - params.film_begin;
+    var texel = film[at_film];
+    for (var sample = 0u; sample < params.call.sample_count; sample++) {
+        let at = sample * params.call.pixel_count + index;
+        add_sample(&texel, paths[at].path.direct, paths[at].path.indirect);
+    }
+    film[at_film] = texel;
+}
