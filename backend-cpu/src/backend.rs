@@ -254,14 +254,9 @@ impl Backend for CpuBackend {
         film: &mut CpuBuffer<FilmTexel>,
     ) -> Result<()> {
         let film = film.as_mut_slice();
-        params.check(film.len(), views)?;
+        params.check(film.len(), views, map.as_slice().len())?;
         check_equal("walk_lhb size", lhb.size as usize, params.lookup.size as usize)?;
         check_equal("walk_lhb triangles", mesh.triangles.len(), scene.data().triangles.len())?;
-        let cells = params.lookup.map_resolution as usize * params.lookup.map_resolution as usize;
-        if map.as_slice().len() < cells {
-            let what = format!("{} words of a map of {cells} cells", map.as_slice().len());
-            return Err(Error::invalid("walk_lhb", what));
-        }
         let lookups = Lookups { lhb: lhb_data(mesh, lhb, views)?, map: map.as_slice() };
         self.run("walk_lhb", || {
             kernels::walk_lhb::walk_lhb(self.isa, scene.data(), lookups, params, film);

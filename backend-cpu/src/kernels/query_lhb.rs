@@ -120,7 +120,11 @@ fn ahead<const REVERSED: u32>(lhb: &LhbData<'_>, query: &LhbQuery, place: &Place
         // The copy of a whole group is one load. What follows the list is masked.
         match lhb.elements.get(from..from + GROUP) {
             Some(elements) => group.copy_from_slice(elements),
-            None => group[..count].copy_from_slice(lhb.elements.get(from..from + count).unwrap_or_default()),
+            None => {
+                // Offsets of other buffers may point beyond these.
+                let Some(elements) = lhb.elements.get(from..from + count) else { return NOTHING };
+                group[..count].copy_from_slice(elements);
+            }
         }
         let (beyond, candidates) = sorted_out::<REVERSED>(query, place.z, &group);
         let mut left = (beyond | candidates) & ((1 << count) - 1);

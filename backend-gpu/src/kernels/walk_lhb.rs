@@ -111,7 +111,7 @@ pub fn run(
     params: &contract::WalkLhbParams,
     film: &mut GpuBuffer<FilmTexel>,
 ) -> Result<()> {
-    params.check(film.len(), views)?;
+    params.check(film.len(), views, map.len())?;
     check_equal("walk_lhb size", lhb.size as usize, params.lookup.size as usize)?;
     check_equal("walk_lhb triangles", mesh.triangle_count() as usize, scene.triangle_count as usize)?;
     let lookups = Lookups::new(device, mesh, lhb, views)?;

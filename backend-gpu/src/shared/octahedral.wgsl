@@ -57,7 +57,8 @@ fn nearest_direction(resolution: u32, direction: vec3<f32>) -> u32 {
         return nearest;
     }
     var best = alignment(q, nearest_map[at], word);
-    while (word & LAST_CANDIDATE) == 0u {
+    // A foreign map may lack the mark of the last candidate.
+    while (word & LAST_CANDIDATE) == 0u && at + 3u < arrayLength(&nearest_map) {
         at += 2u;
         word = nearest_map[at + 1u];
         let aligned = alignment(q, nearest_map[at], word);

@@ -46,8 +46,10 @@ pub(super) fn walk_lhb<B: Backend>(
 ) -> Result<()> {
     let broken = WalkLhbParams { call: asked(fault, &params.call), lookup: lookup(fault, &params.lookup) };
     match fault {
-        Fault::WalkAcceptAnything if params.check(inner.len(film), views).is_err() => return Ok(()),
-        _ => params.check(inner.len(film), views)?,
+        Fault::WalkAcceptAnything if params.check(inner.len(film), views, inner.len(map)).is_err() => {
+            return Ok(());
+        }
+        _ => params.check(inner.len(film), views, inner.len(map))?,
     }
     let before = inner.download(film)?;
     if fault == Fault::WalkTraces {

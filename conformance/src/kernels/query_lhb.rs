@@ -121,7 +121,7 @@ pub(crate) fn scattered(mesh: &LatticeMesh, views: usize, count: usize) -> Vec<L
     let mut random = Random::new(61);
     let query = |i: usize| {
         let free = inputs::from(inputs::anywhere(&mut random), random.index(2 * views) as u32);
-        if i % 3 == 0 || mesh.triangles().is_empty() {
+        if i.is_multiple_of(3) || mesh.triangles().is_empty() {
             return free;
         }
         let triangle = random.index(mesh.triangles().len());

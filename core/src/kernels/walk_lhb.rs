@@ -82,9 +82,10 @@ impl WalkLhbParams {
     /// Checks what a kernel relies on.
     ///
     /// # Errors
-    /// As [`TracePathsParams::check`]; [`Error::InvalidInput`] for views out of their budget or lookup parameters that contradict
+    /// As [`TracePathsParams::check`]; [`Error::InvalidInput`] for views out of their budget, a map of `map_len` words that has fewer words than
+    /// cells, or lookup parameters that contradict
     /// each other.
-    pub fn check(&self, film_len: usize, views: &[View]) -> Result<()> {
+    pub fn check(&self, film_len: usize, views: &[View], map_len: usize) -> Result<()> {
         self.call.check(film_len)?;
         let lookup = &self.lookup;
         check_size(lookup.size)?;
@@ -102,6 +103,10 @@ impl WalkLhbParams {
                 "walk_lhb",
                 format!("map of {} cells per row", lookup.map_resolution),
             ));
+        }
+        let cells = lookup.map_resolution as usize * lookup.map_resolution as usize;
+        if map_len < cells {
+            return Err(Error::invalid("walk_lhb map", format!("{map_len} words of a map of {cells} cells")));
         }
         Ok(())
     }

@@ -60,6 +60,7 @@ fn samples<B>(cx: &Context<'_, B>) -> u32 {
 /// From 20 directions of 32² to 320 of 64². With 256 samples the blocks' error falls from 17 % to 3.7 %, 1.3 % of which is noise; the
 /// picture's light is then 0.5 % too much.
 fn error_falls_with_resolution<B: Backend>(cx: &Context<'_, B>) -> Check {
+    super::pictures_wanted(cx)?;
     let (compiled, call) = scene_and_call("cornell", samples(cx))?;
     let reference = Picture::of(&traced(cx.backend, &compiled, &call)?);
     let mut errors = Vec::new();
@@ -78,6 +79,7 @@ fn error_falls_with_resolution<B: Backend>(cx: &Context<'_, B>) -> Check {
 
 /// Without the cone approximation light bands: on glossy plates before lamps, four times the error.
 fn the_cone_smooths<B: Backend>(cx: &Context<'_, B>) -> Check {
+    super::pictures_wanted(cx)?;
     let (compiled, call) = scene_and_call("veach", samples(cx))?;
     let reference = Picture::of(&traced(cx.backend, &compiled, &call)?);
     let directions: DirectionSet = "icosahedron:80".parse()?;
@@ -101,6 +103,7 @@ fn the_cone_smooths<B: Backend>(cx: &Context<'_, B>) -> Check {
 /// In a closed room every lookup that finds nothing is wrong. Traced, such rays bring the light back; left alone, a coarse set
 /// loses several percent of it.
 fn misses_are_traced<B: Backend>(cx: &Context<'_, B>) -> Check {
+    super::pictures_wanted(cx)?;
     let (compiled, call) = scene_and_call("furnace", samples(cx))?;
     let reference = Picture::of(&traced(cx.backend, &compiled, &call)?).light;
     let mut ratios = Vec::new();
@@ -117,6 +120,7 @@ fn misses_are_traced<B: Backend>(cx: &Context<'_, B>) -> Check {
 
 /// Rays are looked up: with eight directions the picture is another one than the reference, by more than its noise.
 fn lookups_are_looked_up<B: Backend>(cx: &Context<'_, B>) -> Check {
+    super::pictures_wanted(cx)?;
     let (compiled, call) = scene_and_call("cornell", 32)?;
     let reference = Picture::of(&traced(cx.backend, &compiled, &call)?);
     let prepared = Prepared::new(cx.backend, &compiled, "octahedron:8", 16)?;
