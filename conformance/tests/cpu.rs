@@ -16,7 +16,7 @@ fn main() -> ExitCode {
     let mut list = list::List::from_args();
     // Tests outlive this function.
     let backend: &'static CpuBackend = Box::leak(Box::new(CpuBackend::new()));
-    suite::add(&mut list, "cpu", backend, Effort::Full);
+    suite::add(&mut list, "cpu", backend, Effort::Full, Vec::new());
     for threads in [1, 2, 3, 8] {
         for (name, check) in cross::checks::<CpuBackend, CpuBackend>() {
             list.add(format!("cpu d8_threads {name} with {threads} threads"), move || {

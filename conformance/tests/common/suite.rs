@@ -5,11 +5,18 @@ use twinlight_conformance::expectations::{KNOWN, judge};
 use twinlight_conformance::{Effort, Options, suite};
 use twinlight_core::Backend;
 
-/// Adds every trial of `backend` under `label`.
-pub fn add<B: Backend + Send + Sync>(list: &mut List, label: &str, backend: &'static B, effort: Effort) {
+/// Adds the trials of `kernels` (all for none) on `backend` under `label`.
+pub fn add<B: Backend + Send + Sync>(
+    list: &mut List,
+    label: &str,
+    backend: &'static B,
+    effort: Effort,
+    kernels: Vec<String>,
+) {
     let dump_dir = Some(std::env::temp_dir().join("twinlight-conformance").join(label.replace(' ', "_")));
     // Tests outlive this call, and a process has few backends.
-    let options: &'static Options = Box::leak(Box::new(Options { effort, dump_dir, ..Options::default() }));
+    let options: &'static Options =
+        Box::leak(Box::new(Options { effort, dump_dir, kernels, ..Options::default() }));
     for trial in suite(backend, options) {
         list.add(format!("{label} {}", trial.name), move || {
             judge(KNOWN, &backend.info(), &trial.name, trial.run())
