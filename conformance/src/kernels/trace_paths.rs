@@ -6,7 +6,7 @@
 //! Cases and laws of `trace_paths`: pictures whose radiance is known, and the film's integers, which are exact.
 
 pub(super) mod film;
-mod laws;
+pub(super) mod laws;
 
 use crate::oracle::trace_paths::{self as oracle, Known};
 use crate::scenes::compiled;

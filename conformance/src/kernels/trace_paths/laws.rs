@@ -46,6 +46,16 @@ fn any_split_gives_the_same_film<B: Backend>(cx: &Context<'_, B>) -> Check {
     let whole = sobol(&scene, &compiled, 7)?;
     let want = traced(cx.backend, &compiled, &whole)?;
     let resident = cx.backend.upload_scene(&compiled)?;
+    any_split(cx, &whole, &want, |part, film| cx.backend.trace_paths(&resident, part, film))
+}
+
+/// Adds the parts of 117 pixels with 7 samples in several cuts, last parts first, and compares the film with `want`.
+pub(crate) fn any_split<B: Backend>(
+    cx: &Context<'_, B>,
+    whole: &TracePathsParams,
+    want: &[FilmTexel],
+    add: impl Fn(&TracePathsParams, &mut B::Buffer<FilmTexel>) -> twinlight_core::Result<()>,
+) -> Check {
     for (name, pixel_cuts, sample_cuts) in [
         ("samples", &[0, 117][..], &[0, 1, 4, 7][..]),
         ("pixels", &[0, 1, 64, 65, 100, 117], &[0, 7]),
@@ -60,12 +70,12 @@ fn any_split_gives_the_same_film<B: Backend>(cx: &Context<'_, B>) -> Check {
                     pixel_count: p[1] - p[0],
                     sample_begin: s[0],
                     sample_count: s[1] - s[0],
-                    ..whole
+                    ..*whole
                 };
-                cx.backend.trace_paths(&resident, &part, &mut film)?;
+                add(&part, &mut film)?;
             }
         }
-        exact(cx, name, &cx.backend.download(&film)?, &want, LINE)?;
+        exact(cx, name, &cx.backend.download(&film)?, want, LINE)?;
     }
     Ok(())
 }

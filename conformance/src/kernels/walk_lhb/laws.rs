@@ -4,6 +4,7 @@ use super::{Prepared, walked};
 use crate::compare::{Shape, exact};
 use crate::kernels::strict_only;
 use crate::kernels::trace_paths::film::{wide, words};
+use crate::kernels::trace_paths::laws::any_split;
 use crate::kernels::trace_paths::{params, traced};
 use crate::oracle::trace_paths as known;
 use crate::scenes::compiled;
@@ -80,28 +81,7 @@ fn alone_it_is_the_reference<B: Backend>(cx: &Context<'_, B>) -> Check {
 fn any_split_gives_the_same_film<B: Backend>(cx: &Context<'_, B>) -> Check {
     let (_, whole, prepared) = mixed(cx)?;
     let want = walked(cx.backend, &prepared, &whole)?;
-    for (name, pixel_cuts, sample_cuts) in [
-        ("samples", &[0, 117][..], &[0, 1, 4, 7][..]),
-        ("pixels", &[0, 1, 64, 65, 100, 117], &[0, 7]),
-        ("both", &[0, 40, 117], &[0, 5, 6, 7]),
-    ] {
-        let mut film = cx.backend.zeroed::<FilmTexel>(want.len())?;
-        // Last parts first: order must not show.
-        for s in sample_cuts.windows(2).rev() {
-            for p in pixel_cuts.windows(2).rev() {
-                let part = TracePathsParams {
-                    pixel_begin: p[0],
-                    pixel_count: p[1] - p[0],
-                    sample_begin: s[0],
-                    sample_count: s[1] - s[0],
-                    ..whole
-                };
-                prepared.walk(cx.backend, &part, &mut film)?;
-            }
-        }
-        exact(cx, name, &cx.backend.download(&film)?, &want, LINE)?;
-    }
-    Ok(())
+    any_split(cx, &whole, &want, |part, film| prepared.walk(cx.backend, part, film))
 }
 
 /// A film that already holds sums just below 2³², 2⁶³ and the largest count gets the new ones on top, with carry.
