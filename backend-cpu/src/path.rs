@@ -58,13 +58,13 @@ pub(crate) struct Left {
     pub(crate) is_opaque: bool,
 }
 
-/// How light reaches a path from emissive triangles.
+/// How the light of emissive triangles is shared between points sampled on them and scattered rays that meet them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Emitters {
-    /// Scattered rays meet them, and points on them are sampled: the balance heuristic.
-    Met,
-    /// Points on them are sampled.
-    Sampled,
+    /// By the balance heuristic.
+    Balanced,
+    /// By the maximum heuristic: the denser technique counts all of it.
+    Denser,
 }
 
 /// A path from the camera through a random point of the pixel.
@@ -110,9 +110,7 @@ pub(crate) fn visit<W: Width>(
     }
     let surface = surface_at(scene, hit.slot, hit.u, hit.v, path.direction);
     let material = &scene.materials[surface.material as usize];
-    if emitters == Emitters::Met || path.pdf == 0.0 {
-        add_surface_emission(path, scene, &surface, material, hit.t);
-    }
+    add_surface_emission(path, scene, &surface, material, hit.t, emitters);
     if path.vertices == params.max_bounces {
         return None;
     }
@@ -188,6 +186,7 @@ fn add_surface_emission(
     surface: &Surface,
     material: &MaterialRecord,
     distance: f32,
+    emitters: Emitters,
 ) {
     if surface.light == NONE || !(surface.front || material.flags & EMITS_BOTH_SIDES != 0) {
         return;
@@ -197,7 +196,11 @@ fn add_surface_emission(
         let cosine = -(surface.geometric_normal.dot(path.direction));
         let record = &scene.lights[surface.light as usize];
         if cosine > 0.0 {
-            weight = balance(path.pdf, triangle_light_pdf(record, distance, cosine));
+            let pdf = triangle_light_pdf(record, distance, cosine);
+            weight = match emitters {
+                Emitters::Balanced => balance(path.pdf, pdf),
+                Emitters::Denser => f32::from(path.pdf > pdf),
+            };
         }
     }
     let radiance = path.throughput * Vec3::from(material.emission) * weight;
@@ -236,6 +239,10 @@ fn add_direct_light<W: Width>(
     if !(unshadowed.x > 0.0 || unshadowed.y > 0.0 || unshadowed.z > 0.0) {
         return;
     }
+    let is_denser = emitters == Emitters::Denser && scene.lights[index as usize].kind == LIGHT_TRIANGLE;
+    if is_denser && value.pdf > light.pdf {
+        return;
+    }
     let origin = offset_origin(surface.position, surface.offset, surface.geometric_normal, light.direction);
     let mut direction = light.direction;
     let mut reach = FAR;
@@ -249,8 +256,7 @@ fn add_direct_light<W: Width>(
         return;
     }
     let mut weight = 1.0 / light.pdf;
-    let is_met = emitters == Emitters::Met || scene.lights[index as usize].kind != LIGHT_TRIANGLE;
-    if !light.delta && is_met {
+    if !light.delta && !is_denser {
         weight = 1.0 / (light.pdf + value.pdf);
     }
     let radiance = unshadowed * weight;

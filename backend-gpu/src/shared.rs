@@ -40,7 +40,7 @@ shared! {
     OCTAHEDRAL = "octahedral";
     /// Twin of `transport::offset`.
     OFFSET = "offset";
-    /// What the kernels that follow paths share; wants `params.call`, `params.environment` and `EMITTERS_ARE_MET`.
+    /// What the kernels that follow paths share; wants `params.call`, `params.environment` and `DENSER_COUNTS`.
     PATH = "path";
     /// Twin of `scene::compiled`, and the scene's bindings.
     SCENE = "scene";

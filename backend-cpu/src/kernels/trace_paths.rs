@@ -89,7 +89,9 @@ fn trace_path<W: Width>(
         // [3] direct light
         // [4] scatter
         // [5] roulette
-        if visit(&mut path, tracer, scene, params, &met, sampler, base, &numbers, Emitters::Met).is_none() {
+        if visit(&mut path, tracer, scene, params, &met, sampler, base, &numbers, Emitters::Balanced)
+            .is_none()
+        {
             return path.light;
         }
     }

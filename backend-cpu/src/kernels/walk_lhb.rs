@@ -168,7 +168,7 @@ impl<W: Width> Wave<'_, W> {
         let base = Sampler::first_pair(walker.path.vertices);
         let numbers = sampler.vertex(self.tracer.1, base);
         let (scene, call) = (&self.scene, &self.params.call);
-        let emitters = Emitters::Sampled;
+        let emitters = Emitters::Denser;
         // [3] direct light
         // [4] scatter
         // [5] roulette
@@ -230,7 +230,8 @@ impl<W: Width> Wave<'_, W> {
             let Walker { path, ray, .. } = &walkers[index as usize];
             let view = &lhb.views[(ray >> 1) as usize];
             let hit = lhb_hit(lookup, &self.scene, view, query, path.origin, path.direction, *found, cone);
-            let is_traced = hit.slot == NONE && lookup.flags & TRACE_MISSES != 0;
+            let is_doubtful = hit.slot == NONE || self.scene.triangles[hit.slot as usize].light != NONE;
+            let is_traced = is_doubtful && lookup.flags & TRACE_MISSES != 0;
             met[index as usize] = if is_traced {
                 self.traced(&walkers[index as usize])
             } else {

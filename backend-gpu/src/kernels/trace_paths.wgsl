@@ -11,7 +11,7 @@
 const WORKGROUP_SIZE: u32 = 64u;
 const VERTICES_PER_DISPATCH: u32 = 8u;
 
-const EMITTERS_ARE_MET: bool = true;
+const DENSER_COUNTS: bool = false;
 
 struct TracePathsBlock {
     // The pixels and samples of this dispatch.

@@ -10,7 +10,7 @@
 
 const WORKGROUP_SIZE: u32 = 64u;
 
-const EMITTERS_ARE_MET: bool = false;
+const DENSER_COUNTS: bool = true;
 
 const CONE: u32 = 1u;
 const TRACE_MISSES: u32 = 2u;
@@ -78,7 +78,7 @@ fn extend_paths(
         path = paths[index].path;
         if paths[index].leaves != TRACED {
             hit = SlotHit(paths[index].t, paths[index].u, paths[index].v, paths[index].slot);
-            is_traced = hit.slot == NONE && (params.lookup.flags & TRACE_MISSES) != 0u;
+            is_traced = (params.lookup.flags & TRACE_MISSES) != 0u && is_doubtful(hit.slot);
         }
     }
     // [2] vertex: what the ray meets, and its emission
@@ -99,6 +99,14 @@ fn extend_paths(
     if !loops_run(params.loop_rounds) {
         atomicStore(&status[0], 1u);
     }
+}
+
+// Whether a lookup found nothing, or a lamp.
+fn is_doubtful(slot: u32) -> bool {
+    if slot == NONE {
+        return true;
+    }
+    return triangles[slot].light != NONE;
 }
 
 @compute @workgroup_size(64)

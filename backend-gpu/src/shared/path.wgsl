@@ -1,8 +1,8 @@
 // What the kernels that follow paths share: light that is added to a path, the way on, the film. They have a
 // TracePathsParams in params.call, an EnvironmentHeader in params.environment, and say by
-//     const EMITTERS_ARE_MET: bool
-// how light reaches a path from emissive triangles: scattered rays meet them and points on them are sampled, by the balance
-// heuristic, or points on them are sampled alone.
+//     const DENSER_COUNTS: bool
+// how the light of emissive triangles is shared between points sampled on them and scattered rays that meet them: the denser
+// technique counts all of it (the maximum heuristic), or both by the balance heuristic.
 
 const SAMPLER_SOBOL: u32 = 0u;
 const PAIRS_PER_VERTEX: u32 = 5u;
@@ -102,9 +102,7 @@ fn visit(path: ptr<function, PathState>, hit: SlotHit, draws: Draws) -> Left {
     }
     let surface = surface_at(hit.slot, hit.u, hit.v, direction_in);
     let material = materials[surface.material];
-    if EMITTERS_ARE_MET || (*path).pdf == 0.0f {
-        add_surface_emission(path, surface, material, hit.t);
-    }
+    add_surface_emission(path, surface, material, hit.t);
     if (*path).vertices == params.call.max_bounces {
         return end;
     }
@@ -195,7 +193,8 @@ fn add_surface_emission(
     if (*path).pdf > 0.0f {
         let cosine = -dot_product(surface.geometric_normal, (*path).direction);
         if cosine > 0.0f {
-            weight = balance((*path).pdf, triangle_light_pdf(lights[surface.light], distance, cosine));
+            let pdf = triangle_light_pdf(lights[surface.light], distance, cosine);
+            weight = select(balance((*path).pdf, pdf), select(0.0f, 1.0f, (*path).pdf > pdf), DENSER_COUNTS);
         }
     }
     add_light(path, (*path).vertices, (*path).throughput * material.emission * weight);
@@ -232,6 +231,10 @@ fn add_direct_light(
     if !(unshadowed.x > 0.0f || unshadowed.y > 0.0f || unshadowed.z > 0.0f) {
         return;
     }
+    let is_denser = DENSER_COUNTS && lights[index].kind == LIGHT_TRIANGLE;
+    if is_denser && value.pdf > light.pdf {
+        return;
+    }
     let origin =
         offset_origin(surface.position, surface.offset, surface.geometric_normal, light.direction);
     var direction = light.direction;
@@ -245,8 +248,7 @@ fn add_direct_light(
         return;
     }
     var weight = 1.0f / light.pdf;
-    let is_met = EMITTERS_ARE_MET || lights[index].kind != LIGHT_TRIANGLE;
-    if !light.delta && is_met {
+    if !light.delta && !is_denser {
         weight = 1.0f / (light.pdf + value.pdf);
     }
     add_light(path, (*path).vertices + 1u, unshadowed * weight);

@@ -17,6 +17,7 @@ use crate::oracle::walk_lhb::{self as oracle, Looked};
 use crate::scenes::compiled;
 use crate::trial::{Check, Context, Failure, Listing, ensure, list_trials};
 use twinlight_core::Backend;
+use twinlight_methods::slhb::LookupSettings;
 pub(crate) use walked::{Prepared, walked};
 
 /// Lists the trials.
@@ -60,7 +61,14 @@ fn check<B: Backend>(cx: &Context<'_, B>, case: &Looked) -> Check {
     let (size, samples) = if cx.full() { ((32, 32), 256) } else { ((16, 16), 256) };
     let mut params = params(&known.scene, &compiled, size, samples, known.bounces)?;
     params.seed = params.seed.wrapping_add(cx.options.seed as u32);
-    let prepared = Prepared::new(cx.backend, &compiled, case.directions, case.size)?;
+    let settings = LookupSettings {
+        directions: case.directions.parse()?,
+        size: case.size,
+        layers: None,
+        cone: true,
+        trace_misses: case.trace_misses,
+    };
+    let prepared = Prepared::with(cx.backend, &compiled, &settings)?;
     let mean = Mean::of(&walked(cx.backend, &prepared, &params)?, &params)?;
     let error = mean.standard_error();
     ensure(error <= POWER, || {

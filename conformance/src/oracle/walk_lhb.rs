@@ -23,6 +23,8 @@ pub struct Looked {
     pub size: u32,
     /// Share of the radiance that the resolution of the buffers may lose.
     pub lost: f64,
+    /// Whether rays are traced whose lookup finds nothing or a lamp: without, lamps of a few pixels are met too often.
+    pub trace_misses: bool,
 }
 
 /// A set of directions with its covering radius.
@@ -44,12 +46,12 @@ fn unseen((_, radius): Set, size: u32) -> f64 {
     0.37 * radius * radius + 0.7 / f64::from(size)
 }
 
-/// Closed rooms of albedo ρ and emission Lₑ. The light of k bounces was looked up k − 1 times.
+/// Closed rooms of albedo ρ and emission Lₑ. The light of k bounces was looked up at most k times: the last time where lamps are met by
+/// rays.
 pub fn furnaces() -> Vec<Looked> {
     let case = |albedo: f64, emission: f64, bounces: Option<u32>, set: Set, size| {
         let light = |kept: f64| {
-            let kept = |k: u32| kept.powi(k.saturating_sub(1) as i32);
-            (0..=bounces.unwrap_or(400)).map(|k| emission * albedo.powi(k as i32) * kept(k)).sum::<f64>()
+            (0..=bounces.unwrap_or(400)).map(|k| emission * (albedo * kept).powi(k as i32)).sum::<f64>()
         };
         let known = Known {
             name: format!("furnace, albedo {albedo}, {bounces:?} bounces, {}, size {size}", set.0),
@@ -58,7 +60,8 @@ pub fn furnaces() -> Vec<Looked> {
             radiance: [light(1.0); 3],
             slack: 2e-6,
         };
-        Looked { known, directions: set.0, size, lost: 1.0 - light(1.0 - unseen(set, size)) / light(1.0) }
+        let lost = 1.0 - light(1.0 - unseen(set, size)) / light(1.0);
+        Looked { known, directions: set.0, size, lost, trace_misses: false }
     };
     vec![
         case(0.0, 0.75, None, COARSE, 32),
@@ -78,18 +81,18 @@ pub fn sphere_room() -> Looked {
     let wall = 0.5 * (1.0 - 0.0625);
     let light = |seen: f64| 1.0 / (1.0 - wall * seen);
     let lost = 1.0 - light(1.0 - unseen(COARSE, size)) / light(1.0);
-    Looked { known: trace_paths::sphere_room(), directions: COARSE.0, size, lost }
+    Looked { known: trace_paths::sphere_room(), directions: COARSE.0, size, lost, trace_misses: false }
 }
 
 fn convex(known: Known) -> Looked {
-    Looked { known, directions: COARSE.0, size: 32, lost: 0.0 }
+    Looked { known, directions: COARSE.0, size: 32, lost: 0.0, trace_misses: false }
 }
 
 /// Lights over a floor.
 pub fn lights() -> Vec<Looked> {
     let mut all = trace_paths::punctual_lights();
     all.extend(trace_paths::area_lights());
-    all.into_iter().map(convex).collect()
+    all.into_iter().map(|known| Looked { trace_misses: true, ..convex(known) }).collect()
 }
 
 /// Floors under skies.
