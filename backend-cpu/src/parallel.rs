@@ -5,21 +5,23 @@ use rayon::prelude::*;
 use std::marker::PhantomData;
 use std::sync::{Mutex, PoisonError};
 
-/// Elements per task of [`fill_chunks`]: enough to hide the cost of a task, few enough to balance uneven rays.
-const FILL_CHUNK: usize = 256;
+/// Elements per task of [`fill_chunks`] where each is a ray: enough to hide the cost of a task, few enough to balance uneven rays.
+pub(crate) const RAYS: usize = 256;
 
-/// Runs, for every chunk of `out`, the kernel that `kernel` makes of the chunk's first index and the chunk.
+/// Runs, for every chunk of `out`, of `chunk` elements but for the last, the kernel that `kernel` makes of the chunk's first index and
+/// the chunk.
 pub(crate) fn fill_chunks<'a, T, K>(
     isa: Isa,
+    chunk: usize,
     out: &'a mut [T],
     kernel: impl Fn(usize, &'a mut [T]) -> K + Sync,
 ) where
     T: Send,
     K: Kernel<Output = ()>,
 {
-    out.par_chunks_mut(FILL_CHUNK)
+    out.par_chunks_mut(chunk)
         .enumerate()
-        .for_each(|(chunk, elements)| dispatch(isa, kernel(chunk * FILL_CHUNK, elements)));
+        .for_each(|(number, elements)| dispatch(isa, kernel(number * chunk, elements)));
 }
 
 /// Hands the items to the pool's threads one at a time and strictly in order: when an item is begun, every earlier one

@@ -10,7 +10,15 @@ use crate::parallel::fill_chunks;
 use crate::simd::{Isa, Kernel, Width, prefetch};
 use twinlight_core::kernels::query_lhb::{CLEARANCE, LhbQuery, NO_ELEMENT};
 use twinlight_core::kernels::rasterize_lhb::LhbElement;
-use twinlight_core::lattice::{DEPTH_ORIGIN, LatticePlane, View};
+use twinlight_core::lattice::{LatticePlane, View};
+
+mod front;
+mod project;
+#[cfg(test)]
+mod tests;
+
+use front::{Verdict, judge};
+use project::project;
 
 /// Layered hit buffers and what queries need beside them.
 #[derive(Debug, Clone, Copy)]
@@ -27,13 +35,20 @@ pub(crate) struct LhbData<'a> {
 /// Queries that are looked up side by side: more than memory serves at once.
 pub(crate) const BATCH: usize = 32;
 
-/// Elements of a list that are judged side by side.
-const GROUP: usize = 4;
+/// Queries per task: as many bytes as the first cache holds four times over.
+const TASK: usize = 1 << 12;
+
+/// Batches between the one that is looked up and the one that is fetched: a few memory latencies. The processor's own prefetching ends
+/// at every page, which is every fourth batch.
+const BATCHES_AHEAD: usize = 4;
+
+/// Queries of a cache line of 64 bytes.
+const QUERIES_PER_LINE: usize = 64 / size_of::<LhbQuery>();
 
 const NOTHING: LhbElement = LhbElement { surface: NO_ELEMENT, depth: 0 };
 
 pub(crate) fn query_lhb(isa: Isa, lhb: LhbData<'_>, queries: &[LhbQuery], hits: &mut [LhbElement]) {
-    fill_chunks(isa, hits, |first, hits| Chunk { lhb, queries: &queries[first..][..hits.len()], hits });
+    fill_chunks(isa, TASK, hits, |first, hits| Chunk { lhb, queries: &queries[first..][..hits.len()], hits });
 }
 
 struct Chunk<'a> {
@@ -46,120 +61,93 @@ impl Kernel for Chunk<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<W: Width>(self, _: W) {
+    fn run<W: Width>(self, width: W) {
+        let mut later = self.queries.chunks(BATCH).skip(BATCHES_AHEAD);
         for (queries, hits) in self.queries.chunks(BATCH).zip(self.hits.chunks_mut(BATCH)) {
-            look_up(&self.lhb, queries, hits);
+            for line in later.next().unwrap_or_default().chunks(QUERIES_PER_LINE) {
+                prefetch(&line[0]);
+            }
+            look_up(width, &self.lhb, queries, hits);
         }
     }
 }
 
-/// Where a query's list is.
+/// Where a list begins and ends.
 #[derive(Debug, Clone, Copy, Default)]
-struct Place {
-    /// Number of the list, and then where it begins and ends.
-    list: u32,
+struct Span {
     begin: u32,
     end: u32,
-    /// The position's depth.
-    z: i32,
 }
 
 /// The elements that at most [`BATCH`] queries meet, in steps for all of them: each waits for memory, and waits of independent
-/// reads overlap.
+/// reads overlap. Few queries need more than the first elements of their list: they are left for the end, so that the others
+/// take the same way and no processor has to guess it.
 #[inline(always)]
-pub(crate) fn look_up(lhb: &LhbData<'_>, queries: &[LhbQuery], hits: &mut [LhbElement]) {
-    let mut places = [Place::default(); BATCH];
+pub(crate) fn look_up<W: Width>(width: W, lhb: &LhbData<'_>, queries: &[LhbQuery], hits: &mut [LhbElement]) {
     // [1] project
-    for (query, place) in queries.iter().zip(&mut places) {
-        *place = project(lhb, query);
-        if let Some(offset) = lhb.offsets.get(place.list as usize) {
+    let places = project(width, lhb, queries);
+    for &list in &places.lists[..queries.len()] {
+        if let Some(offset) = lhb.offsets.get(list as usize) {
             prefetch(offset);
         }
     }
-    for place in places.iter_mut().take(queries.len()) {
-        let list = place.list as usize;
-        if let Some(&[begin, end]) = lhb.offsets.get(list..).and_then(|rest| rest.first_chunk()) {
-            (place.begin, place.end) = (begin, end);
+    let mut spans = [Span::default(); BATCH];
+    for (span, &list) in spans.iter_mut().zip(&places.lists).take(queries.len()) {
+        if let Some(&[begin, end]) = lhb.offsets.get(list as usize..).and_then(|rest| rest.first_chunk()) {
+            *span = Span { begin, end };
             if let Some(element) = lhb.elements.get(begin as usize) {
                 prefetch(element);
             }
         }
     }
     // [2] walk the list
-    for ((query, place), hit) in queries.iter().zip(&places).zip(hits) {
-        *hit = if query.ray & 1 == 0 { ahead::<0>(lhb, query, place) } else { ahead::<1>(lhb, query, place) };
+    let mut pending = [0_u8; BATCH];
+    let mut count = 0;
+    for (i, (query, hit)) in queries.iter().zip(&mut *hits).enumerate() {
+        let (span, depth) = (spans[i], places.depths[i]);
+        let verdict = if query.ray & 1 == 0 {
+            judge::<W, 0>(width, lhb, query, depth, span)
+        } else {
+            judge::<W, 1>(width, lhb, query, depth, span)
+        };
+        *hit = if let Verdict::Meets(element) = verdict { element } else { NOTHING };
+        if let Verdict::PlaneOf(surface) = verdict
+            && let Some(plane) = lhb.planes.get((surface >> 1) as usize)
+        {
+            prefetch(plane);
+        }
+        pending[count] = i as u8;
+        count += usize::from(matches!(verdict, Verdict::PlaneOf(_) | Verdict::Later));
+    }
+    for &i in &pending[..count] {
+        let i = usize::from(i);
+        let (query, span, depth) = (&queries[i], spans[i], places.depths[i] as i32);
+        hits[i] = if query.ray & 1 == 0 {
+            ahead::<0>(lhb, query, depth, span)
+        } else {
+            ahead::<1>(lhb, query, depth, span)
+        };
     }
 }
 
-/// The number of a query's list, beyond all for a view that there isn't.
+/// The first element of a list that lies ahead; the last, for `REVERSED` 1.
 #[inline(always)]
-fn project(lhb: &LhbData<'_>, query: &LhbQuery) -> Place {
-    let number = query.ray >> 1;
-    let Some(view) = lhb.views.get(number as usize) else {
-        return Place { list: u32::MAX, ..Place::default() };
-    };
-    let bits = lhb.bits;
-    let middle = ((lhb.size << (bits + 14)) + (1 << 14)) as i32;
-    let edge = (lhb.size << bits) as i32 - 1;
-    let x = ((dot(view.right, query.position).wrapping_add(middle)) >> 15).wrapping_add(query.offset[0]);
-    let y = ((dot(view.down, query.position).wrapping_add(middle)) >> 15).wrapping_add(query.offset[1]);
-    let z = dot(view.forward, query.position).wrapping_add(DEPTH_ORIGIN);
-    let (column, row) = (x.clamp(0, edge) as u32 >> bits, y.clamp(0, edge) as u32 >> bits);
-    Place { list: (number * lhb.size + row) * lhb.size + column, begin: 0, end: 0, z }
-}
-
-/// The first element of a list that lies ahead; the last, for `REVERSED` 1. Lists are read a group at a time: most end in the
-/// first, and no processor foresees at which of its elements.
-#[inline(always)]
-fn ahead<const REVERSED: u32>(lhb: &LhbData<'_>, query: &LhbQuery, place: &Place) -> LhbElement {
-    let (mut begin, mut end) = (place.begin as usize, place.end as usize);
-    while begin < end {
-        let count = (end - begin).min(GROUP);
-        let from = if REVERSED == 0 { begin } else { end - count };
-        let mut group = [NOTHING; GROUP];
-        // The copy of a whole group is one load. What follows the list is masked.
-        match lhb.elements.get(from..from + GROUP) {
-            Some(elements) => group.copy_from_slice(elements),
-            None => {
-                // Offsets of other buffers may point beyond these.
-                let Some(elements) = lhb.elements.get(from..from + count) else { return NOTHING };
-                group[..count].copy_from_slice(elements);
-            }
-        }
-        let (beyond, candidates) = sorted_out::<REVERSED>(query, place.z, &group);
-        let mut left = (beyond | candidates) & ((1 << count) - 1);
-        while left != 0 {
-            let i = if REVERSED == 0 { left.trailing_zeros() } else { 31 - left.leading_zeros() };
-            let LhbElement { surface, depth } = group[i as usize];
-            let seen = LhbElement { surface: surface ^ REVERSED, depth };
-            if beyond >> i & 1 == 1 || is_before(lhb, query, seen.surface) {
-                return seen;
-            }
-            left &= !(1 << i);
-        }
-        if REVERSED == 0 {
-            begin += count;
-        } else {
-            end -= count;
+fn ahead<const REVERSED: u32>(lhb: &LhbData<'_>, query: &LhbQuery, depth: i32, list: Span) -> LhbElement {
+    // Offsets of other buffers may point beyond these.
+    let Some(elements) = lhb.elements.get(list.begin as usize..list.end as usize) else { return NOTHING };
+    let window = query.window as i32;
+    for i in 0..elements.len() {
+        let element = elements[if REVERSED == 0 { i } else { elements.len() - 1 - i }];
+        let away = (element.depth as i32).wrapping_sub(depth);
+        let ahead = if REVERSED == 0 { away } else { away.wrapping_neg() };
+        let seen = LhbElement { surface: element.surface ^ REVERSED, ..element };
+        let changed = seen.surface ^ query.leaves;
+        let is_candidate = ahead >= -window && changed & 1 == 0 && changed != 0;
+        if ahead > window || (is_candidate && is_before(lhb, query, seen.surface)) {
+            return seen;
         }
     }
     NOTHING
-}
-
-/// Which elements lie beyond the window, and which lie in it, are not of the triangle that is left, and show the side that was
-/// left.
-#[inline(always)]
-fn sorted_out<const REVERSED: u32>(query: &LhbQuery, z: i32, group: &[LhbElement; GROUP]) -> (u32, u32) {
-    let window = query.window as i32;
-    let (mut beyond, mut candidates) = (0, 0);
-    for (i, element) in group.iter().enumerate() {
-        let ahead = if REVERSED == 0 { element.depth as i32 - z } else { z - element.depth as i32 };
-        let changed = element.surface ^ REVERSED ^ query.leaves;
-        let is_candidate = (ahead >= -window) & (changed & 1 == 0) & (changed >> 1 != 0);
-        beyond |= u32::from(ahead > window) << i;
-        candidates |= u32::from(is_candidate) << i;
-    }
-    (beyond, candidates)
 }
 
 /// Whether the query's position is before the plane of a surface, on the side that it shows.

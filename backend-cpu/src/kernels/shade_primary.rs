@@ -6,7 +6,7 @@
 //! `shade_primary`: one ray per pixel centre, shaded by the functions that paths use.
 
 use crate::bvh8::NO_SLOT;
-use crate::parallel::fill_chunks;
+use crate::parallel::{RAYS, fill_chunks};
 use crate::scene::SceneData;
 use crate::simd::{Isa, Kernel, Width};
 use bytemuck::Zeroable;
@@ -25,7 +25,7 @@ pub(crate) fn shade_primary(
     params: &ShadePrimaryParams,
     gbuffer: &mut [GBufferTexel],
 ) {
-    fill_chunks(isa, gbuffer, |first, texels| Primary { scene, params, first, texels });
+    fill_chunks(isa, RAYS, gbuffer, |first, texels| Primary { scene, params, first, texels });
 }
 
 struct Primary<'a> {

@@ -6,19 +6,19 @@
 //! `trace`: one ray at a time down the eight-wide hierarchy ([`crate::bvh8`]), eight boxes or triangles at once.
 
 use crate::bvh8::NO_SLOT;
-use crate::parallel::fill_chunks;
+use crate::parallel::{RAYS, fill_chunks};
 use crate::scene::SceneData;
 use crate::simd::{Isa, Kernel, Width};
 use twinlight_core::kernels::trace::{Hit, NO_HIT, Ray};
 
 /// The closest hit of every ray.
 pub(crate) fn trace_closest(isa: Isa, scene: &SceneData, rays: &[Ray], hits: &mut [Hit]) {
-    fill_chunks(isa, hits, |first, hits| Closest { scene, rays: &rays[first..], hits });
+    fill_chunks(isa, RAYS, hits, |first, hits| Closest { scene, rays: &rays[first..], hits });
 }
 
 /// Whether anything lies on each ray.
 pub(crate) fn trace_any(isa: Isa, scene: &SceneData, rays: &[Ray], occluded: &mut [u32]) {
-    fill_chunks(isa, occluded, |first, occluded| Any { scene, rays: &rays[first..], occluded });
+    fill_chunks(isa, RAYS, occluded, |first, occluded| Any { scene, rays: &rays[first..], occluded });
 }
 
 struct Closest<'a> {

@@ -217,14 +217,14 @@ impl<W: Width> Wave<'_, W> {
             let view = &lhb.views[(walker.ray >> 1) as usize];
             *query = lhb_query(lookup, view, walker.ray, walker.path.origin, walker.normal, walker.leaves);
         }
-        look_up(lhb, &queries[..batch.len()], &mut found);
+        look_up(self.tracer.1, lhb, &queries[..batch.len()], &mut found);
         if cone {
             for ((query, found), &index) in queries.iter_mut().zip(&found).zip(batch) {
                 let walker = &walkers[index as usize];
                 let view = &lhb.views[(walker.ray >> 1) as usize];
                 *query = lhb_refined(lookup, view, query, walker.normal, walker.path.direction, *found);
             }
-            look_up(lhb, &queries[..batch.len()], &mut found);
+            look_up(self.tracer.1, lhb, &queries[..batch.len()], &mut found);
         }
         for ((query, found), &index) in queries.iter().zip(&found).zip(batch) {
             let Walker { path, ray, .. } = &walkers[index as usize];

@@ -2,10 +2,13 @@
 
 use super::{Avx2, Words};
 use std::arch::x86_64::{
-    __m256i, _mm256_add_epi32, _mm256_and_si256, _mm256_blend_epi32, _mm256_cvtepi32_ps, _mm256_loadu_si256,
-    _mm256_mul_ps, _mm256_mullo_epi32, _mm256_or_si256, _mm256_set1_epi8, _mm256_set1_epi32, _mm256_set1_ps,
-    _mm256_setr_epi8, _mm256_shuffle_epi8, _mm256_srli_epi16, _mm256_srli_epi32, _mm256_storeu_ps,
-    _mm256_storeu_si256, _mm256_xor_si256,
+    __m256i, _mm_cvtsi32_si128, _mm256_add_epi32, _mm256_and_si256, _mm256_blend_epi32, _mm256_castsi256_ps,
+    _mm256_cmpeq_epi32, _mm256_cmpgt_epi32, _mm256_cvtepi32_ps, _mm256_loadu_si256, _mm256_max_epi32,
+    _mm256_min_epi32, _mm256_movemask_ps, _mm256_mul_ps, _mm256_mullo_epi32, _mm256_or_si256,
+    _mm256_permute2x128_si256, _mm256_set1_epi8, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi8,
+    _mm256_setzero_si256, _mm256_shuffle_epi8, _mm256_srai_epi32, _mm256_srl_epi32, _mm256_srli_epi16,
+    _mm256_srli_epi32, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_unpackhi_epi32, _mm256_unpackhi_epi64,
+    _mm256_unpacklo_epi32, _mm256_unpacklo_epi64, _mm256_xor_si256,
 };
 use std::ops::{Add, BitAnd, BitXor, Mul};
 
@@ -57,6 +60,48 @@ impl Words for U8 {
         // SAFETY: words exist, so the processor has AVX2.
         U8(unsafe { _mm256_srli_epi32::<BITS>(self.0) })
     }
+    #[inline(always)]
+    fn shift_right_by(self, bits: u32) -> Self {
+        // SAFETY: words exist, so the processor has AVX2.
+        U8(unsafe { _mm256_srl_epi32(self.0, _mm_cvtsi32_si128(bits as i32)) })
+    }
+    #[inline(always)]
+    fn shift_right_signed<const BITS: i32>(self) -> Self {
+        // SAFETY: words exist, so the processor has AVX2.
+        U8(unsafe { _mm256_srai_epi32::<BITS>(self.0) })
+    }
+    #[inline(always)]
+    fn clamp_signed(self, edge: Self) -> Self {
+        // SAFETY: words exist, so the processor has AVX2.
+        U8(unsafe { _mm256_min_epi32(_mm256_max_epi32(self.0, _mm256_setzero_si256()), edge.0) })
+    }
+    #[inline(always)]
+    fn greater_signed(self, other: Self) -> u32 {
+        // SAFETY: words exist, so the processor has AVX2.
+        unsafe { _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(self.0, other.0))) as u32 }
+    }
+    #[inline(always)]
+    fn equal(self, other: Self) -> u32 {
+        // SAFETY: words exist, so the processor has AVX2.
+        unsafe { _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(self.0, other.0))) as u32 }
+    }
+    #[inline(always)]
+    fn transpose([a, b, c, d, e, f, g, h]: [Self; 8]) -> [Self; 8] {
+        let (left, right) = (transpose_halves([a, b, c, d]), transpose_halves([e, f, g, h]));
+        // SAFETY: words exist, so the processor has AVX2.
+        unsafe {
+            [
+                U8(_mm256_permute2x128_si256::<0x20>(left[0], right[0])),
+                U8(_mm256_permute2x128_si256::<0x20>(left[1], right[1])),
+                U8(_mm256_permute2x128_si256::<0x20>(left[2], right[2])),
+                U8(_mm256_permute2x128_si256::<0x20>(left[3], right[3])),
+                U8(_mm256_permute2x128_si256::<0x31>(left[0], right[0])),
+                U8(_mm256_permute2x128_si256::<0x31>(left[1], right[1])),
+                U8(_mm256_permute2x128_si256::<0x31>(left[2], right[2])),
+                U8(_mm256_permute2x128_si256::<0x31>(left[3], right[3])),
+            ]
+        }
+    }
     /// Bytes are reversed by one shuffle, the halves of each byte by looking up their reversals in another.
     #[inline(always)]
     fn reverse_bits(self) -> Self {
@@ -100,5 +145,21 @@ impl Words for U8 {
             _mm256_storeu_ps(out.as_mut_ptr(), units);
         }
         out
+    }
+}
+
+/// The two 4 × 4 blocks of four rows, transposed each.
+#[inline(always)]
+fn transpose_halves([a, b, c, d]: [U8; 4]) -> [__m256i; 4] {
+    // SAFETY: words exist, so the processor has AVX2.
+    unsafe {
+        let (ab_low, ab_high) = (_mm256_unpacklo_epi32(a.0, b.0), _mm256_unpackhi_epi32(a.0, b.0));
+        let (cd_low, cd_high) = (_mm256_unpacklo_epi32(c.0, d.0), _mm256_unpackhi_epi32(c.0, d.0));
+        [
+            _mm256_unpacklo_epi64(ab_low, cd_low),
+            _mm256_unpackhi_epi64(ab_low, cd_low),
+            _mm256_unpacklo_epi64(ab_high, cd_high),
+            _mm256_unpackhi_epi64(ab_high, cd_high),
+        ]
     }
 }

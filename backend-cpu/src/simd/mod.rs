@@ -78,6 +78,21 @@ pub trait Words:
     /// Every lane shifted to the right.
     #[must_use]
     fn shift_right<const BITS: i32>(self) -> Self;
+    /// Every lane shifted to the right by a number of bits below 32.
+    #[must_use]
+    fn shift_right_by(self, bits: u32) -> Self;
+    /// Every lane, as `i32`, shifted to the right: rounded down.
+    #[must_use]
+    fn shift_right_signed<const BITS: i32>(self) -> Self;
+    /// Every lane, as `i32`, brought into [0, `edge`'s lane].
+    #[must_use]
+    fn clamp_signed(self, edge: Self) -> Self;
+    /// Bit i says whether lane i of `self` is greater than that of `other`, as `i32`.
+    fn greater_signed(self, other: Self) -> u32;
+    /// Bit i says whether lane i of `self` is that of `other`.
+    fn equal(self, other: Self) -> u32;
+    /// Lane i of vector k becomes lane k of vector i.
+    fn transpose(rows: [Self; 8]) -> [Self; 8];
     /// Every lane with its bits in reverse order.
     #[must_use]
     fn reverse_bits(self) -> Self;

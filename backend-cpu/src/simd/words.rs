@@ -41,6 +41,33 @@ impl<W: Copy> Words for Array<W> {
         Array(self.0.map(|x| x >> BITS), PhantomData)
     }
     #[inline(always)]
+    fn shift_right_by(self, bits: u32) -> Self {
+        Array(self.0.map(|x| x >> bits), PhantomData)
+    }
+    #[inline(always)]
+    fn shift_right_signed<const BITS: i32>(self) -> Self {
+        Array(self.0.map(|x| (x as i32 >> BITS) as u32), PhantomData)
+    }
+    #[inline(always)]
+    fn clamp_signed(self, edge: Self) -> Self {
+        let clamp = |i: usize| (self.0[i] as i32).max(0).min(edge.0[i] as i32) as u32;
+        Array(std::array::from_fn(clamp), PhantomData)
+    }
+    #[inline(always)]
+    fn greater_signed(self, other: Self) -> u32 {
+        let pairs = self.0.iter().zip(other.0).enumerate();
+        pairs.fold(0, |bits, (i, (&a, b))| bits | u32::from(a as i32 > b as i32) << i)
+    }
+    #[inline(always)]
+    fn equal(self, other: Self) -> u32 {
+        let pairs = self.0.iter().zip(other.0).enumerate();
+        pairs.fold(0, |bits, (i, (&a, b))| bits | u32::from(a == b) << i)
+    }
+    #[inline(always)]
+    fn transpose(rows: [Self; 8]) -> [Self; 8] {
+        std::array::from_fn(|i| Array(rows.map(|row| row.0[i]), PhantomData))
+    }
+    #[inline(always)]
     fn reverse_bits(self) -> Self {
         Array(self.0.map(u32::reverse_bits), PhantomData)
     }
