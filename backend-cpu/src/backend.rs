@@ -274,8 +274,7 @@ impl Backend for CpuBackend {
 /// What queries read, if it belongs together.
 fn lhb_data<'a>(mesh: &'a CpuMesh, lhb: &'a Lhb<CpuBackend>, views: &'a [View]) -> Result<LhbData<'a>> {
     check_equal("query_lhb views", views.len(), lhb.view_count as usize)?;
-    let pixels = lhb.view_count as usize * lhb.size as usize * lhb.size as usize;
-    check_equal("query_lhb offsets", lhb.offsets.as_slice().len(), pixels + 1)?;
+    check_equal("query_lhb offsets", lhb.offsets.as_slice().len(), lhb.lists()? + 1)?;
     Ok(LhbData {
         size: lhb.size,
         bits: subpixel_bits(lhb.size),

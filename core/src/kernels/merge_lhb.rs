@@ -54,7 +54,7 @@ impl MergeLhbParams {
     /// # Errors
     /// [`Error::InvalidInput`] for an unknown side, buffers that differ in size or views, whose offsets are not one more than their lists,
     /// or whose numbers left out are not there with a cap, or there without one; [`Error::LimitExceeded`] for a first triangle
-    /// beyond [`MAX_TRIANGLES`].
+    /// beyond [`MAX_TRIANGLES`]; those of [`LhbBuffers::lists`].
     pub fn check<O, E>(
         &self,
         kept: &LhbBuffers<O, E>,
@@ -77,7 +77,7 @@ impl MergeLhbParams {
                 format!("{kept:?} and {added:?} have no lists in common"),
             ));
         }
-        let lists = kept.view_count as usize * kept.size as usize * kept.size as usize;
+        let lists = kept.lists()?;
         let left_out = if self.layer_cap > 0 { lists } else { 0 };
         for (name, buffers) in [("kept", kept), ("added", added)] {
             let found = (len(&buffers.offsets), len(&buffers.left_out));
