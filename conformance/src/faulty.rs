@@ -1,5 +1,6 @@
 //! A backend with one planted bug: everything goes through to a sound backend, and one result comes back wrong.
 
+mod merge_lhb;
 mod query_lhb;
 mod rasterize_lhb;
 mod scan;
@@ -27,6 +28,7 @@ use twinlight_core::{Backend, BackendInfo, Result};
 pub struct Faulty<'a, B> {
     inner: &'a B,
     fault: Fault,
+    merged_before: merge_lhb::Previous,
 }
 
 /// A scene on the sound backend, and on the host for the bugs that need to know it.
@@ -46,7 +48,7 @@ pub struct FaultyMesh<M> {
 impl<'a, B: Backend> Faulty<'a, B> {
     /// Plants `fault` in `inner`.
     pub fn new(inner: &'a B, fault: Fault) -> Self {
-        Self { inner, fault }
+        Self { inner, fault, merged_before: merge_lhb::Previous::default() }
     }
 }
 
@@ -145,7 +147,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
     }
 
     fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>> {
-        self.inner.merge_lhb(kept, added, params)
+        merge_lhb::merge_lhb(self.inner, self.fault, &self.merged_before, kept, added, params)
     }
 
     fn query_lhb(
