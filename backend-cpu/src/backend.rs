@@ -11,6 +11,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -226,6 +227,11 @@ impl Backend for CpuBackend {
         self.run("rasterize_lhb", || kernels::rasterize_lhb::rasterize_lhb(self.isa, mesh, views, params))
     }
 
+    fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>> {
+        params.check(kept, added, |buffer| buffer.as_slice().len())?;
+        self.run("merge_lhb", || kernels::merge_lhb::merge_lhb(kept, added, params))
+    }
+
     fn query_lhb(
         &self,
         mesh: &CpuMesh,
@@ -268,8 +274,7 @@ impl Backend for CpuBackend {
 /// What queries read, if it belongs together.
 fn lhb_data<'a>(mesh: &'a CpuMesh, lhb: &'a Lhb<CpuBackend>, views: &'a [View]) -> Result<LhbData<'a>> {
     check_equal("query_lhb views", views.len(), lhb.view_count as usize)?;
-    let pixels = lhb.view_count as usize * lhb.size as usize * lhb.size as usize;
-    check_equal("query_lhb offsets", lhb.offsets.as_slice().len(), pixels + 1)?;
+    check_equal("query_lhb offsets", lhb.offsets.as_slice().len(), lhb.lists()? + 1)?;
     Ok(LhbData {
         size: lhb.size,
         bits: subpixel_bits(lhb.size),

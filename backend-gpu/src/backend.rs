@@ -2,11 +2,14 @@
 
 use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
-use crate::kernels::{query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths, walk_lhb};
+use crate::kernels::{
+    merge_lhb, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths, walk_lhb,
+};
 use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
 use crate::strict::Mode;
 use bytemuck::Pod;
+use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -139,6 +142,10 @@ impl Backend for GpuBackend {
         params: &RasterizeLhbParams,
     ) -> Result<Lhb<Self>> {
         rasterize_lhb::run(&self.device, mesh, views, params)
+    }
+
+    fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>> {
+        merge_lhb::run(&self.device, kept, added, params)
     }
 
     fn query_lhb(

@@ -9,7 +9,8 @@ use crate::kernels::walk_lhb::{Prepared, walked};
 use crate::scenes::{Rays, compiled};
 use crate::trial::{Check, Context, Failure, Options, ensure};
 use twinlight_core::Backend;
-use twinlight_core::kernels::rasterize_lhb::{LhbElement, RasterizeLhbParams};
+use twinlight_core::kernels::merge_lhb::MergeLhbParams;
+use twinlight_core::kernels::rasterize_lhb::{CAP_FAR, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::Hit;
 use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsParams};
@@ -26,6 +27,7 @@ pub type CrossCheck<A, B> = fn(&A, &B) -> Check;
 pub fn checks<A: Backend, B: Backend>() -> Vec<(&'static str, CrossCheck<A, B>)> {
     vec![
         ("rasterize_lhb", lists),
+        ("merge_lhb", merges),
         ("query_lhb", lookups),
         ("trace", hits),
         ("shade_primary", gbuffers),
@@ -85,6 +87,37 @@ fn lists<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
         let cx = context(b, &options, "cross.rasterize_lhb");
         exact(&cx, "offsets", &got.0, &want.0, Shape::Image { width: 48 })?;
         exact(&cx, "elements", &got.1, &want.1, Shape::Line)
+    })
+}
+
+/// Such buffers of a scene's first two thirds and of the rest, merged: all of them, and the two farthest.
+fn merges<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    type Downloaded = (Vec<u32>, Vec<LhbElement>, Vec<u32>);
+    fn run<B: Backend>(backend: &B, mesh: &LatticeMesh, layer_cap: u32) -> Result<Downloaded, Failure> {
+        let (kept, added) = mesh.triangles().split_at(mesh.triangles().len() * 2 / 3);
+        let params = RasterizeLhbParams { layer_cap, cap_side: CAP_FAR, ..RasterizeLhbParams::new(48) };
+        let drawn = |triangles: &[[u32; 3]]| {
+            let part = LatticeMesh::new(mesh.vertices().to_vec(), triangles.to_vec())?;
+            backend.rasterize_lhb(&backend.upload_mesh(&part)?, &four_views()?, &params)
+        };
+        let first_triangle = kept.len() as u32;
+        let merge = MergeLhbParams { first_triangle, layer_cap, cap_side: CAP_FAR, padding: 0 };
+        let lhb = backend.merge_lhb(&drawn(kept)?, &drawn(added)?, &merge)?;
+        let left_out = backend.download(&lhb.left_out)?;
+        Ok((backend.download(&lhb.offsets)?, backend.download(&lhb.elements)?, left_out))
+    }
+    each_scene(|scene| {
+        let compiled = compiled(scene);
+        let mesh = LatticeMesh::of_scene(&Lattice::of_scene(&compiled)?, &compiled)?;
+        for layer_cap in [0, 2] {
+            let (want, got) = (run(a, &mesh, layer_cap)?, run(b, &mesh, layer_cap)?);
+            let options = Options::default();
+            let cx = context(b, &options, "cross.merge_lhb");
+            exact(&cx, "offsets", &got.0, &want.0, Shape::Image { width: 48 })?;
+            exact(&cx, "elements", &got.1, &want.1, Shape::Line)?;
+            exact(&cx, "left_out", &got.2, &want.2, Shape::Image { width: 48 })?;
+        }
+        Ok(())
     })
 }
 

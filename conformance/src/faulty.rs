@@ -1,5 +1,6 @@
 //! A backend with one planted bug: everything goes through to a sound backend, and one result comes back wrong.
 
+mod merge_lhb;
 mod query_lhb;
 mod rasterize_lhb;
 mod scan;
@@ -11,6 +12,7 @@ mod walk_lhb;
 
 use crate::faults::Fault;
 use bytemuck::Pod;
+use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -26,6 +28,7 @@ use twinlight_core::{Backend, BackendInfo, Result};
 pub struct Faulty<'a, B> {
     inner: &'a B,
     fault: Fault,
+    merged_before: merge_lhb::Previous,
 }
 
 /// A scene on the sound backend, and on the host for the bugs that need to know it.
@@ -45,7 +48,7 @@ pub struct FaultyMesh<M> {
 impl<'a, B: Backend> Faulty<'a, B> {
     /// Plants `fault` in `inner`.
     pub fn new(inner: &'a B, fault: Fault) -> Self {
-        Self { inner, fault }
+        Self { inner, fault, merged_before: merge_lhb::Previous::default() }
     }
 }
 
@@ -141,6 +144,10 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &RasterizeLhbParams,
     ) -> Result<Lhb<Self>> {
         rasterize_lhb::rasterize_lhb(self.inner, self.fault, mesh, views, params)
+    }
+
+    fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>> {
+        merge_lhb::merge_lhb(self.inner, self.fault, &self.merged_before, kept, added, params)
     }
 
     fn query_lhb(

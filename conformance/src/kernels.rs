@@ -1,5 +1,6 @@
 //! Cases and laws of every kernel, in pipeline order.
 
+pub mod merge_lhb;
 mod property;
 pub mod query_lhb;
 pub mod rasterize_lhb;
@@ -14,14 +15,24 @@ use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 8] =
-    ["scan", "sort", "rasterize_lhb", "query_lhb", "trace", "shade_primary", "trace_paths", "walk_lhb"];
+pub const STEMS: [&str; 9] = [
+    "scan",
+    "sort",
+    "rasterize_lhb",
+    "merge_lhb",
+    "query_lhb",
+    "trace",
+    "shade_primary",
+    "trace_paths",
+    "walk_lhb",
+];
 
 /// Lists every kernel's trials.
 pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     scan::list(list);
     sort::list(list);
     rasterize_lhb::list(list);
+    merge_lhb::list(list);
     query_lhb::list(list);
     trace::list(list);
     shade_primary::list(list);

@@ -111,7 +111,9 @@ fn d10_host_flushes_subnormals() -> Check {
     let flushing = pool.install(|| {
         let options = Options {
             effort: Effort::Quick,
-            kernels: ["scan", "sort", "rasterize_lhb", "query_lhb", "trace"].map(String::from).into(),
+            kernels: ["scan", "sort", "rasterize_lhb", "merge_lhb", "query_lhb", "trace"]
+                .map(String::from)
+                .into(),
             ..Options::default()
         };
         let report = run(&CpuBackend::new(), &options, "");

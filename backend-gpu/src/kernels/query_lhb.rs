@@ -81,8 +81,7 @@ impl<'a> Lookups<'a> {
         views: &[View],
     ) -> Result<Self> {
         check_equal("query_lhb views", views.len(), lhb.view_count as usize)?;
-        let pixels = lhb.view_count as usize * lhb.size as usize * lhb.size as usize;
-        check_equal("query_lhb offsets", lhb.offsets.len(), pixels + 1)?;
+        check_equal("query_lhb offsets", lhb.offsets.len(), lhb.lists()? + 1)?;
         let header = LhbHeader {
             size: lhb.size,
             view_count: lhb.view_count,

@@ -136,6 +136,17 @@ impl<O, E> fmt::Debug for LhbBuffers<O, E> {
     }
 }
 
+impl<O, E> LhbBuffers<O, E> {
+    /// The number of lists that the size and the views stand for. Anyone can put buffers together: whoever reads them asks this
+    /// before it multiplies.
+    ///
+    /// # Errors
+    /// [`Error::InvalidInput`] for a size of 0, [`Error::LimitExceeded`] for a size or a number of lists beyond the limits.
+    pub fn lists(&self) -> Result<usize> {
+        lists(self.view_count.into(), self.size)
+    }
+}
+
 /// [`LhbBuffers`] in a backend's buffers.
 pub type Lhb<B> = LhbBuffers<<B as Backend>::Buffer<u32>, <B as Backend>::Buffer<LhbElement>>;
 
@@ -158,18 +169,24 @@ impl RasterizeLhbParams {
         if self.cap_side > CAP_FAR {
             return Err(Error::invalid("cap_side", format!("{} is neither 0 nor 1", self.cap_side)));
         }
-        crate::lattice::check_size(self.size)?;
+        let lists = lists(views.len() as u64, self.size)?;
         for (i, view) in views.iter().enumerate() {
             view.check(self.size)
                 .map_err(|error| Error::invalid(format!("views[{i}]"), error.to_string()))?;
         }
-        let lists = views.len() as u64 * u64::from(self.size) * u64::from(self.size);
-        let limit = scan::MAX_LEN as u64 - 1;
-        if lists > limit {
-            return Err(Error::limit("pixels of all views", lists, limit));
-        }
-        Ok(lists as usize)
+        Ok(lists)
     }
+}
+
+/// The number of lists of `views` views of `size` by `size` pixels, if there may be such views.
+fn lists(views: u64, size: u32) -> Result<usize> {
+    crate::lattice::check_size(size)?;
+    let lists = views.saturating_mul(u64::from(size) * u64::from(size));
+    let limit = scan::MAX_LEN as u64 - 1;
+    if lists > limit {
+        return Err(Error::limit("pixels of all views", lists, limit));
+    }
+    Ok(lists as usize)
 }
 
 /// The number of elements as `offsets` can hold it.

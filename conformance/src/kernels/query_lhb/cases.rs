@@ -11,7 +11,7 @@ use crate::oracle::rasterize_lhb::Lists;
 use crate::trial::{Check, Context, Failure, Listing, ensure, list_trials};
 use proptest::prelude::*;
 use twinlight_core::kernels::query_lhb::LhbQuery;
-use twinlight_core::kernels::rasterize_lhb::LhbElement;
+use twinlight_core::kernels::rasterize_lhb::{LhbBuffers, LhbElement};
 use twinlight_core::lattice::LatticeMesh;
 use twinlight_core::{Backend, Error};
 use twinlight_fixtures::meshes;
@@ -20,6 +20,7 @@ use twinlight_fixtures::random::Random;
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "query_lhb":
         query_ladder, nothing_to_meet, views_beyond_the_last, random_lists, random_meshes, bad_lengths_are_refused,
+        impossible_sizes_are_refused,
     );
 }
 
@@ -107,4 +108,27 @@ fn bad_lengths_are_refused<B: Backend>(cx: &Context<'_, B>) -> Check {
     // Nothing asked is nothing wrong.
     let empty = Seen { lists: Lists::of([]), views: vec![], ..seen };
     empty.agrees(cx, &[])
+}
+
+/// Buffers put together by hand, of no pixels, or of as many as fall on few modulo 2³² or 2⁶⁴, or on none.
+fn impossible_sizes_are_refused<B: Backend>(cx: &Context<'_, B>) -> Check {
+    let seen = Seen::new(snapped(&meshes::icosphere(2)), views(&some_directions(4, 4), 8), 8);
+    let mesh = cx.backend.upload_mesh(&seen.mesh)?;
+    let queries = cx.backend.upload(&[from([0; 3], 0), from([0; 3], 1)])?;
+    for size in [0, 1 << 16, 1 << 31, u32::MAX] {
+        let lhb = LhbBuffers {
+            size,
+            view_count: 4,
+            offsets: cx.backend.upload(&[0])?,
+            elements: cx.backend.zeroed(0)?,
+            left_out: cx.backend.zeroed(0)?,
+        };
+        let mut hits = cx.backend.zeroed(2)?;
+        match cx.backend.query_lhb(&mesh, &lhb, &seen.views, &queries, &mut hits) {
+            Err(Error::InvalidInput { .. } | Error::LimitExceeded { .. }) => {}
+            Err(Error::Unsupported(what)) => return Err(Failure::Skip(what)),
+            other => return Err(Failure::Mismatch(format!("size {size}: {other:?}"))),
+        }
+    }
+    Ok(())
 }
