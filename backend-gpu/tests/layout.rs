@@ -239,7 +239,7 @@ fn twins() -> Vec<Twins> {
                     subpixel_bits,
                     map_resolution,
                     flags,
-                    padding,
+                    interleave,
                 }),
             ])),
             constants: with_lookup_constants(with_path_constants(vec![

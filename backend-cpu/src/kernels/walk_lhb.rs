@@ -150,7 +150,17 @@ impl<W: Width> Wave<'_, W> {
 
     fn sampler(&self, pixel: u32, sample: u32) -> Sampler {
         let call = &self.params.call;
-        Sampler { kind: call.sampler, stream: mix_pair(call.seed, pixel), sample }
+        Sampler { kind: call.sampler, stream: mix_pair(call.seed, self.pattern_pixel(pixel)), sample }
+    }
+
+    /// The pixel whose numbers a pixel draws.
+    #[inline(always)]
+    fn pattern_pixel(&self, pixel: u32) -> u32 {
+        let (n, width) = (self.params.lookup.interleave, self.params.call.width);
+        if n <= 1 {
+            return pixel;
+        }
+        ((pixel / width) % n) * width + (pixel % width) % n
     }
 
     // [1] sample: a point of the pixel

@@ -67,7 +67,7 @@ fn extend_paths(
     }
     let pixel = params.call.pixel_begin + index % params.call.pixel_count;
     let sample = params.call.sample_begin + index / params.call.pixel_count;
-    let draws = Draws(mix_pair(params.call.seed, pixel), sample);
+    let draws = Draws(mix_pair(params.call.seed, pattern_pixel(pixel)), sample);
     var path: PathState;
     var hit = SlotHit(FAR, 0.0f, 0.0f, NONE);
     var is_traced = true;
@@ -99,6 +99,16 @@ fn extend_paths(
     if !loops_run(params.loop_rounds) {
         atomicStore(&status[0], 1u);
     }
+}
+
+// The pixel whose numbers a pixel draws.
+fn pattern_pixel(pixel: u32) -> u32 {
+    let n = params.lookup.interleave;
+    if n <= 1u {
+        return pixel;
+    }
+    let width = params.call.width;
+    return ((pixel / width) % n) * width + (pixel % width) % n;
 }
 
 // Whether a lookup found nothing, or a lamp.

@@ -20,7 +20,7 @@ struct WalkLhbBlock {
     subpixel_bits: u32,
     map_resolution: u32,
     flags: u32,
-    padding: u32,
+    interleave: u32,
 }
 
 struct LhbHit {

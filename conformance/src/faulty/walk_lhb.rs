@@ -97,6 +97,7 @@ fn lookup(fault: Fault, block: &WalkLhbBlock) -> WalkLhbBlock {
     match fault {
         Fault::WalkNoCone => WalkLhbBlock { flags: block.flags & !CONE, ..*block },
         Fault::WalkLosesMisses => WalkLhbBlock { flags: block.flags & !TRACE_MISSES, ..*block },
+        Fault::WalkNoPatterns => WalkLhbBlock { interleave: 0, ..*block },
         Fault::WalkNoLift => WalkLhbBlock { lift: 0.0, ..*block },
         Fault::WalkScale => WalkLhbBlock { steps_per_unit: block.steps_per_unit / 1.05, ..*block },
         Fault::WalkOffCentre => WalkLhbBlock { centre: [0.0; 3], ..*block },

@@ -18,7 +18,8 @@
 //! *Promise.* Where `kept` was made of a mesh of `first_triangle` triangles and `added` of another, with the same views, cap and side, the
 //! result is that of the two meshes one behind the other ([`crate::lattice::LatticeMesh::followed_by`]), bit for bit: the K first of a
 //! union are among the K first of its parts. `kept` is only read: what was added is removed by using `kept` again.
-//! *Edge cases.* Nothing added: a copy of `kept`. Nothing kept: `added`, renumbered. Offsets that fall or leave their elements are the
+//! *Edge cases.* Nothing added: a copy of `kept`. Nothing kept: `added`, renumbered. Lists that are not sorted, and
+//! offsets that fall or leave their elements are the
 //! caller's error: some lists, or an error, and nothing outside the buffers is read.
 //! *Limits.* Fewer than 2³² elements after the cap, checked before they are allocated.
 //! *Cost.* Each element is read once and written once. On a processor whose memory moves 10 GB/s, 3 M elements of 160 views of 128²

@@ -1,6 +1,7 @@
 //! Contracts of the kernels, in pipeline order: purpose, formula, source, parameters, buffers, edge cases, accuracy.
 //! No algorithm; the twins are in the backends under the same stem.
 
+pub mod filter_indirect;
 pub mod merge_lhb;
 pub mod query_lhb;
 pub mod rasterize_lhb;

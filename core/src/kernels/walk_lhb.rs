@@ -22,6 +22,9 @@
 //!    lights, which a ray meets analytically, and the environment, which rays that leave the scene read along ω, keep the
 //!    balance heuristic.
 //!
+//! 4. *Interleaved sampling.* With [`WalkLhbBlock::interleave`] n > 1, the pixel (x, y) draws the numbers of the pixel (x mod n, y mod n): each
+//!    n × n tile holds the same patterns, whose noise [`crate::kernels::filter_indirect`] averages.
+//!
 //! *Shapes.* The [`crate::kernels::rasterize_lhb::LhbBuffers`] of the set's lines, all layers, and the views they were made with;
 //! the mesh is the scene's ([`crate::lattice::LatticeMesh::of_scene`]), so that its triangles are the scene's slots; `film` as `trace_paths`.
 //! *Units, fixed point, order.* As `trace_paths`: a sum of integers, the same for any split and any order of lookups.
@@ -67,8 +70,8 @@ pub struct WalkLhbBlock {
     pub map_resolution: u32,
     /// Sum of [`CONE`] and [`TRACE_MISSES`], or 0.
     pub flags: u32,
-    /// Unused, 0.
-    pub padding: u32,
+    /// Pixels per row and column of an interleaved pattern; 0 and 1 give every pixel numbers of its own.
+    pub interleave: u32,
 }
 
 /// Parameters of one call.

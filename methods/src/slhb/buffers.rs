@@ -95,7 +95,7 @@ pub fn build<B: Backend>(
         subpixel_bits: subpixel_bits(size),
         map_resolution: map.resolution(),
         flags: flag(settings.cone, CONE) | flag(settings.trace_misses, TRACE_MISSES),
-        padding: 0,
+        interleave: 0,
     };
     let map = backend.upload(&map.ray_words(&settings.directions))?;
     Ok(Buffers { mesh, lhb, views, map, lookup, build_time })

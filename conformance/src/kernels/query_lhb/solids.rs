@@ -35,7 +35,7 @@ fn block(size: u32) -> WalkLhbBlock {
         subpixel_bits: subpixel_bits(size),
         map_resolution: 2,
         flags: 0,
-        padding: 0,
+        interleave: 0,
     }
 }
 

@@ -11,6 +11,7 @@ use crate::scenes::compiled;
 use crate::trial::{Check, Context, Failure, Listing, ensure, list_trials};
 use twinlight_core::Backend;
 use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsParams};
+use twinlight_core::kernels::walk_lhb::{WalkLhbBlock, WalkLhbParams};
 use twinlight_core::scene::CompiledScene;
 use twinlight_fixtures::scenes;
 
@@ -18,7 +19,7 @@ pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "walk_lhb":
         emission_is_the_reference, alone_it_is_the_reference, any_split_gives_the_same_film,
         sums_carry_and_accumulate, repeated, seeds_and_samples_differ, direct_light_ignores_later_bounces,
-        bounces_only_add,
+        bounces_only_add, patterns_repeat,
     );
 }
 
@@ -161,4 +162,22 @@ fn bounces_only_add<B: Backend>(cx: &Context<'_, B>) -> Check {
         before = after;
     }
     Ok(())
+}
+
+/// Interleaved: the first tile has the film of its pixels' own numbers, and others have that of other numbers.
+fn patterns_repeat<B: Backend>(cx: &Context<'_, B>) -> Check {
+    let (_, call, prepared) = mixed(cx)?;
+    let own = walked(cx.backend, &prepared, &call)?;
+    let (width, tile) = (call.width as usize, 4);
+    let lookup = WalkLhbBlock { interleave: tile as u32, ..prepared.buffers.lookup };
+    let mut film = cx.backend.zeroed::<FilmTexel>(own.len())?;
+    prepared.walk_as(cx.backend, &WalkLhbParams { call, lookup }, &mut film)?;
+    let film = cx.backend.download(&film)?;
+    let is_first = |i: usize| i % width < tile && i / width < tile;
+    let kept = |inside: bool| (0..own.len()).filter(|&i| is_first(i) == inside && film[i] == own[i]).count();
+    ensure(kept(true) == tile * tile, || {
+        format!("{} pixels of the first tile keep their light", kept(true))
+    })?;
+    // Where nothing scatters, numbers decide nothing.
+    ensure(kept(false) * 4 < own.len(), || format!("{} other pixels keep their light", kept(false)))
 }
