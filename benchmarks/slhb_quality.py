@@ -1,27 +1,26 @@
 """What directions, sizes and the cone cost and give: the method slhb beside the reference tracer with equal bounces.
 
-python benchmarks/slhb_quality.py --twinlight target/release/twinlight SCENE... [--size 128] [--spp 256] [--reference-spp 1024]
+python benchmarks/slhb_quality.py --twinlight target/release/twinlight SCENE... [--size 128] [--spp 256]
 
 Prints a Markdown table per scene. The line "reference" is another render by the reference tracer with as many samples and
 another seed: the noise that the other lines can't fall below.
 """
 
 import argparse
+import itertools
 import json
 import subprocess
 import tempfile
 from pathlib import Path
 
-KNOBS = [
-    *((directions, 128, cone) for directions in (8, 20, 80, 320, 1280) for cone in ("auto", "off")),
-    *((320, size, "auto") for size in (32, 64, 256)),
-]
+DIRECTIONS, SIZES, CONES = (8, 20, 80, 320, 1280), (32, 64, 128, 256), ("auto", "off")
 
 
 def render(options, scene: str, out: Path, spp: int, extra: list[str]) -> dict:
     size = f"{options.size}x{options.size}"
     command = [options.twinlight, "render", scene, "-o", str(out), "--size", size, "--spp", str(spp)]
     command += ["--bounces", str(options.bounces), "--backend", "cpu", "--progress", "never", *extra]
+    command += [word for path in options.allow_path for word in ("--allow-path", path)]
     subprocess.run(command, check=True, capture_output=True)
     return json.loads(out.with_suffix(".json").read_text())
 
@@ -49,7 +48,7 @@ def table(options, scene: str, folder: Path) -> None:
     render(options, scene, truth, options.reference_spp, ["--method", "reference"])
     other = render(options, scene, out, options.spp, ["--method", "reference", "--seed", "1"])
     print(row("reference", compare(options, out, truth), other), flush=True)
-    for directions, size, cone in KNOBS:
+    for cone, size, directions in itertools.product(CONES, SIZES, DIRECTIONS):
         knobs = ["--method", "slhb", "--directions", str(directions), "--lhb-size", str(size), "--cone", cone]
         sidecar = render(options, scene, out, options.spp, [*knobs, "--seed", "1"])
         print(row(f"{directions}, {size}², {cone}", compare(options, out, truth), sidecar), flush=True)
@@ -59,6 +58,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="+")
     parser.add_argument("--twinlight", default="twinlight")
+    parser.add_argument("--allow-path", action="append", default=[], help="folders beside the scene's that it may read")
     parser.add_argument("--size", type=int, default=128)
     parser.add_argument("--spp", type=int, default=256)
     parser.add_argument("--reference-spp", type=int, default=1024)

@@ -10,7 +10,7 @@ use crate::kernels::query_lhb::{BATCH, LhbData, look_up};
 use crate::path::{Emitters, Met, Path, add_sample, start, visit};
 use crate::sampler::Sampler;
 use crate::scene::SceneData;
-use crate::simd::{Isa, Kernel, Width, dispatch};
+use crate::simd::{Isa, Kernel, Width, dispatch, prefetch};
 use crate::tracer::WideTracer;
 use bytemuck::Zeroable;
 use glam::Vec3;
@@ -107,6 +107,16 @@ impl Kernel for Task<'_> {
     }
 }
 
+/// Asks for the lines of walkers that will be read: in the order of views they are anywhere.
+#[inline(always)]
+fn fetch(walkers: &[Walker], indices: &[u32]) {
+    for &index in indices {
+        let walker = &walkers[index as usize];
+        prefetch(&walker.path);
+        prefetch(&walker.ray);
+    }
+}
+
 /// What a wave of paths reads.
 struct Wave<'a, W> {
     tracer: WideTracer<'a, W>,
@@ -134,7 +144,9 @@ impl<W: Width> Wave<'_, W> {
             for &index in order.traced() {
                 met[index as usize] = self.traced(&walkers[index as usize]);
             }
+            let mut next = order.looked_up().chunks(BATCH).skip(1);
             for batch in order.looked_up().chunks(BATCH) {
+                fetch(&walkers, next.next().unwrap_or_default());
                 self.look_up(&walkers, batch, &mut met);
             }
             // In the walkers' order, so that rays to lights start from neighbouring pixels.
@@ -235,6 +247,11 @@ impl<W: Width> Wave<'_, W> {
                 *query = lhb_refined(lookup, view, query, walker.normal, walker.path.direction, *found);
             }
             look_up(self.tracer.1, lhb, &queries[..batch.len()], &mut found);
+        }
+        for found in &found[..batch.len()] {
+            if let Some(triangle) = self.scene.triangles.get((found.surface >> 1) as usize) {
+                prefetch(triangle);
+            }
         }
         for ((query, found), &index) in queries.iter().zip(&found).zip(batch) {
             let Walker { path, ray, .. } = &walkers[index as usize];
