@@ -249,6 +249,7 @@ fn twins() -> Vec<Twins> {
                 ("COARSE", lhb::COARSE.into()),
                 ("ACROSS", lhb::ACROSS.into()),
                 ("HALF_DIAGONAL", lhb::HALF_DIAGONAL.into()),
+                ("ROUNDING", lhb::ROUNDING.into()),
                 ("LEAST_SLOPE", lhb::LEAST_SLOPE.into()),
                 ("GREATEST_SLOPE", lhb::GREATEST_SLOPE.into()),
             ])),

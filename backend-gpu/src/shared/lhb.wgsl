@@ -7,6 +7,7 @@ const COARSE: f32 = 16384.0f;
 // Steps across the lattice.
 const ACROSS: f32 = 65536.0f;
 const HALF_DIAGONAL: f32 = 0.70710677f;
+const ROUNDING: f32 = 4.0f;
 const LEAST_SLOPE: f32 = 4.0f;
 const GREATEST_SLOPE: f32 = 64.0f;
 
@@ -78,9 +79,13 @@ fn lhb_query(
     leaves: u32,
 ) -> LhbQuery {
     let p = lattice_point(block, position);
-    let half_diagonal = ACROSS * HALF_DIAGONAL / f32(block.size);
     let cosine = dot_product(normal, ray_direction(view, ray));
-    return LhbQuery(p, ray, vec2<i32>(0, 0), leaves, depth_window(half_diagonal, cosine));
+    return LhbQuery(p, ray, vec2<i32>(0, 0), leaves, depth_window(aside_at_most(block), cosine));
+}
+
+// How far a pixel's line may be from a point that is looked up there, steps.
+fn aside_at_most(block: WalkLhbBlock) -> f32 {
+    return ACROSS * HALF_DIAGONAL / f32(block.size) + ROUNDING;
 }
 
 // z of a lookup's position, as elements count it.
@@ -113,8 +118,7 @@ fn lhb_refined(
     // Coarse sets have directions at right angles to the ray.
     let aside = direction * (1.0f / select(0.25f, cosine, cosine > 0.25f)) - line;
     let offset = aside * element_distance(view, query, found);
-    let half_diagonal = ACROSS * HALF_DIAGONAL / f32(block.size);
-    let distance = half_diagonal + sqrt(dot_product(offset, offset));
+    let distance = aside_at_most(block) + sqrt(dot_product(offset, offset));
     return LhbQuery(
         query.position,
         query.ray,

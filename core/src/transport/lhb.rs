@@ -22,6 +22,9 @@ pub const COARSE: f32 = 16_384.0;
 pub const ACROSS: f32 = 65_536.0;
 /// √½ of a pixel is from its centre to its corner.
 pub const HALF_DIAGONAL: f32 = 0.707_106_77;
+/// Steps by which rounding may put a line farther aside: of the position to the lattice, √3/2; of it on the screen, to units of two
+/// steps in two axes, √2; and of the triangle's vertices there, √2.
+pub const ROUNDING: f32 = 4.0;
 /// Slope that the window allows for at least: what other surfaces may have.
 pub const LEAST_SLOPE: f32 = 4.0;
 /// And at most: what keeps a window within the lattice.
@@ -91,15 +94,20 @@ pub fn lhb_query(
     leaves: u32,
 ) -> LhbQuery {
     let p = lattice_point(block, position);
-    let half_diagonal = ACROSS * HALF_DIAGONAL / block.size as f32;
     let cosine = normal.dot(ray_direction(view, ray));
     LhbQuery {
         position: p.to_array(),
         ray,
         offset: [0, 0],
         leaves,
-        window: depth_window(half_diagonal, cosine),
+        window: depth_window(aside_at_most(block), cosine),
     }
+}
+
+/// How far a pixel's line may be from a point that is looked up there, steps.
+#[inline(always)]
+fn aside_at_most(block: &WalkLhbBlock) -> f32 {
+    ACROSS * HALF_DIAGONAL / block.size as f32 + ROUNDING
 }
 
 /// z of a lookup's position, as elements count it.
@@ -138,8 +146,7 @@ pub fn lhb_refined(
     // Coarse sets have directions at right angles to the ray.
     let aside = direction * (1.0 / if cosine > 0.25 { cosine } else { 0.25 }) - along;
     let offset = aside * element_distance(view, query, found);
-    let half_diagonal = ACROSS * HALF_DIAGONAL / block.size as f32;
-    let distance = half_diagonal + offset.dot(offset).sqrt();
+    let distance = aside_at_most(block) + offset.dot(offset).sqrt();
     LhbQuery {
         offset: [screen_offset(view.right, offset), screen_offset(view.down, offset)],
         window: depth_window(distance, normal.dot(along)),
