@@ -67,6 +67,15 @@ pub(crate) enum Emitters {
     Denser,
 }
 
+/// The direction that a path goes on along, whatever its numbers say.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Aim {
+    /// Unit direction in the scene's space.
+    pub(crate) direction: Vec3,
+    /// What f·cos is multiplied by.
+    pub(crate) scale: f32,
+}
+
 /// A path from the camera through a random point of the pixel.
 #[inline(always)]
 pub(crate) fn start<W: Width>(width: W, params: &TracePathsParams, pixel: u32, sampler: &Sampler) -> Path {
@@ -96,6 +105,7 @@ pub(crate) fn visit<W: Width>(
     base: u32,
     numbers: &VertexNumbers,
     emitters: Emitters,
+    aim: Option<Aim>,
 ) -> Option<Left> {
     let sphere = nearest_sphere(scene, path.origin, path.direction, hit.t);
     if sphere.light != NONE {
@@ -119,12 +129,15 @@ pub(crate) fn visit<W: Width>(
     let wo =
         Vec3::new(to_viewer.dot(tangent), to_viewer.dot(bitangent), to_viewer.dot(surface.shading_normal));
     // The way on is worked out before the shadow ray is sent: the processor overlaps the two.
-    let scattered = scatter(material, &surface, wo, numbers);
+    let frame = (tangent, bitangent, surface.shading_normal);
+    let scattered = match aim {
+        Some(aim) if material.kind == MATERIAL_OPAQUE => aimed(material, surface.albedo, frame, wo, aim),
+        _ => scatter(material, &surface, wo, numbers),
+    };
     let direction = to_world(tangent, bitangent, surface.shading_normal, scattered.direction);
     let leaves = direction.dot(surface.geometric_normal);
     let origin = offset_origin(surface.position, surface.offset, surface.geometric_normal, direction);
     if material.kind == MATERIAL_OPAQUE && scene.environment.light_count > 0 {
-        let frame = (tangent, bitangent, surface.shading_normal);
         add_direct_light(path, tracer, scene, &surface, frame, wo, sampler, base, numbers, emitters);
     }
     if scattered.direction == Vec3::ZERO || (material.kind != MATERIAL_DIELECTRIC && !(leaves > 0.0)) {
@@ -273,6 +286,21 @@ fn scatter(material: &MaterialRecord, surface: &Surface, wo: Vec3, numbers: &Ver
     }
     let [u, v] = numbers.direction;
     sample_opaque(material, surface.albedo, wo, numbers.lobe, u, v)
+}
+
+/// What an opaque surface scatters along a direction that is given.
+#[inline(always)]
+fn aimed(
+    material: &MaterialRecord,
+    albedo: Vec3,
+    frame: (Vec3, Vec3, Vec3),
+    wo: Vec3,
+    aim: Aim,
+) -> BsdfSample {
+    let d = aim.direction;
+    let wi = Vec3::new(d.dot(frame.0), d.dot(frame.1), d.dot(frame.2));
+    let value = evaluate(material, albedo, wo, wi);
+    BsdfSample { direction: wi, weight: value.f_cos * aim.scale, pdf: value.pdf }
 }
 
 /// Whether the path goes on; dims its throughput by the survival probability.

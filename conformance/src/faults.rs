@@ -205,6 +205,7 @@ faults! {
         WalkLosesMisses "rays whose lookup finds nothing leave the scene",
         WalkNoCone "the cone approximation is left out",
         WalkNoLift "rays below their surface are not lifted",
+        WalkNoGather "directions are drawn where all are asked for",
         WalkNoPatterns "interleaved pixels draw numbers of their own",
         WalkWrongTriangle "the triangle after the one that is met is shaded",
         WalkFirstLayer "lists end after their first element",

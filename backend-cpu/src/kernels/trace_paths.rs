@@ -89,7 +89,7 @@ fn trace_path<W: Width>(
         // [3] direct light
         // [4] scatter
         // [5] roulette
-        if visit(&mut path, tracer, scene, params, &met, sampler, base, &numbers, Emitters::Balanced)
+        if visit(&mut path, tracer, scene, params, &met, sampler, base, &numbers, Emitters::Balanced, None)
             .is_none()
         {
             return path.light;

@@ -7,7 +7,7 @@
 //! that the lists of one view are read together, while they are in cache.
 
 use crate::kernels::query_lhb::{BATCH, LhbData, look_up};
-use crate::path::{Emitters, Met, Path, add_sample, start, visit};
+use crate::path::{Aim, Emitters, Met, Path, add_sample, start, visit};
 use crate::sampler::Sampler;
 use crate::scene::SceneData;
 use crate::simd::{Isa, Kernel, Width, dispatch, prefetch};
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::LhbElement;
 use twinlight_core::kernels::trace_paths::FilmTexel;
-use twinlight_core::kernels::walk_lhb::{CONE, TRACE_MISSES, WalkLhbParams};
+use twinlight_core::kernels::walk_lhb::{CONE, GATHER, TRACE_MISSES, WalkLhbParams};
 use twinlight_core::math::hash::mix_pair;
 use twinlight_core::math::octahedral::nearest_direction;
 use twinlight_core::scene::NONE;
@@ -194,8 +194,9 @@ impl<W: Width> Wave<'_, W> {
         // [3] direct light
         // [4] scatter
         // [5] roulette
+        let aim = (walker.path.vertices == 0).then(|| self.aim(walker.sample)).flatten();
         let left =
-            visit(&mut walker.path, &self.tracer, scene, call, met, &sampler, base, &numbers, emitters);
+            visit(&mut walker.path, &self.tracer, scene, call, met, &sampler, base, &numbers, emitters, aim);
         walker.ray = match left {
             None => ENDED,
             Some(left) if !left.is_opaque => TRACED,
@@ -212,6 +213,20 @@ impl<W: Width> Wave<'_, W> {
     fn traced(&self, walker: &Walker) -> Met {
         let hit = self.tracer.closest(walker.path.origin, walker.path.direction, 0.0, FAR);
         Met { slot: hit.slot, u: hit.u, v: hit.v, t: hit.t }
+    }
+
+    /// Where the first vertex of a path sends it, if directions are gathered.
+    #[inline(always)]
+    fn aim(&self, sample: u32) -> Option<Aim> {
+        let lookup = &self.params.lookup;
+        if lookup.flags & GATHER == 0 {
+            return None;
+        }
+        let entry = (lookup.gather_begin + 2 * (sample % lookup.gather_count)) as usize;
+        let &[ray, angle] = self.lookups.map.get(entry..)?.first_chunk()?;
+        let view = self.lookups.lhb.views.get((ray >> 1) as usize)?;
+        let scale = f32::from_bits(angle) * lookup.gather_count as f32;
+        Some(Aim { direction: ray_direction(view, ray), scale })
     }
 
     // [6] direction: the nearest that leaves the surface

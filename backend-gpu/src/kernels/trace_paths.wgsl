@@ -69,7 +69,7 @@ fn visit_vertex(path: ptr<function, PathState>, draws: Draws) {
     // [3] direct light
     // [4] scatter
     // [5] roulette
-    let left = visit(path, hit, draws);
+    let left = visit(path, hit, draws, Aim(false, vec3<f32>(0.0f), 0.0f));
     (*path).alive = select(0u, 1u, left.goes_on);
 }
 

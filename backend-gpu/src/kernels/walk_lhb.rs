@@ -22,7 +22,7 @@ use std::sync::Arc;
 use twinlight_core::Result;
 use twinlight_core::kernels::rasterize_lhb::Lhb;
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
-use twinlight_core::kernels::walk_lhb as contract;
+use twinlight_core::kernels::walk_lhb::{self as contract, GATHER};
 use twinlight_core::lattice::View;
 use twinlight_core::scene::EnvironmentHeader;
 
@@ -120,6 +120,7 @@ pub fn run(
     }
     let batches = Batches::new(device, &params.call, size_of::<Walker>());
     let walk = Walk {
+        aim_paths: device.pipeline(&SOURCE, "aim_paths")?,
         extend_paths: device.pipeline(&SOURCE, "extend_paths")?,
         look_up_rays: device.pipeline(&SOURCE, "look_up_rays")?,
         add_samples: device.pipeline(&SOURCE, "add_samples")?,
@@ -135,6 +136,7 @@ pub fn run(
 }
 
 struct Walk<'a> {
+    aim_paths: Arc<Pipeline>,
     extend_paths: Arc<Pipeline>,
     look_up_rays: Arc<Pipeline>,
     add_samples: Arc<Pipeline>,
@@ -196,12 +198,15 @@ impl Walk<'_> {
         let workgroups = (params.call.pixel_count * params.call.sample_count).div_ceil(WORKGROUP_SIZE);
         let own = [("paths", self.paths.binding()), ("status", self.status.binding())];
         let buffers = self.scene.buffers_and(&own);
+        let lookups = self.lookups.buffers_and(&[("nearest_map", self.map.binding())]);
+        let all = [buffers.clone(), lookups].concat();
+        if params.segment == 0 && params.lookup.flags & GATHER != 0 {
+            recorder.dispatch("aim paths", &self.aim_paths, params, &all, workgroups)?;
+        }
         recorder.dispatch("extend paths", &self.extend_paths, params, &buffers, workgroups)?;
         if is_last {
             return Ok(());
         }
-        let lookups = self.lookups.buffers_and(&[("nearest_map", self.map.binding())]);
-        let buffers = [buffers, lookups].concat();
-        recorder.dispatch("look up rays", &self.look_up_rays, params, &buffers, workgroups)
+        recorder.dispatch("look up rays", &self.look_up_rays, params, &all, workgroups)
     }
 }

@@ -14,6 +14,7 @@ const DENSER_COUNTS: bool = true;
 
 const CONE: u32 = 1u;
 const TRACE_MISSES: u32 = 2u;
+const GATHER: u32 = 4u;
 
 // Walker.leaves of a ray from the camera, a mirror or glass.
 const TRACED: u32 = 0xffffffffu;
@@ -52,6 +53,25 @@ struct Walker {
 @group(0) @binding(8) var<storage, read_write> paths: array<Walker>;
 @group(0) @binding(14) var<storage, read> nearest_map: array<u32>;
 
+// Where the first vertex of each path sends it, if directions are gathered.
+@compute @workgroup_size(64)
+fn aim_paths(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let index = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
+    if index >= params.call.pixel_count * params.call.sample_count {
+        return;
+    }
+    let sample = params.call.sample_begin + index / params.call.pixel_count;
+    let entry = params.lookup.gather_begin + 2u * (sample % params.lookup.gather_count);
+    let ray = nearest_map[entry];
+    let scale = bitcast<f32>(nearest_map[entry + 1u]) * f32(params.lookup.gather_count);
+    paths[index].normal = ray_direction(views[ray >> 1u], ray);
+    paths[index].t = scale;
+}
+
 @compute @workgroup_size(64)
 fn extend_paths(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -71,9 +91,12 @@ fn extend_paths(
     var path: PathState;
     var hit = SlotHit(FAR, 0.0f, 0.0f, NONE);
     var is_traced = true;
+    var aim = Aim(false, vec3<f32>(0.0f), 0.0f);
     if params.segment == 0u {
         // [1] sample: a point of the pixel
         path = start_path(draws, pixel);
+        // Left here by aim_paths.
+        aim = Aim((params.lookup.flags & GATHER) != 0u, paths[index].normal, paths[index].t);
     } else {
         path = paths[index].path;
         if paths[index].leaves != TRACED {
@@ -88,7 +111,7 @@ fn extend_paths(
     // [3] direct light
     // [4] scatter
     // [5] roulette
-    let left = visit(&path, hit, draws);
+    let left = visit(&path, hit, draws, aim);
     path.alive = select(0u, 1u, left.goes_on);
     paths[index].path = path;
     if left.goes_on {

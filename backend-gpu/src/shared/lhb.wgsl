@@ -22,6 +22,9 @@ struct WalkLhbBlock {
     map_resolution: u32,
     flags: u32,
     interleave: u32,
+    gather_begin: u32,
+    gather_count: u32,
+    padding: vec2<u32>,
 }
 
 struct LhbHit {

@@ -85,8 +85,15 @@ struct Left {
     normal: vec3<f32>,
 }
 
+// The direction that a path goes on along, whatever its numbers say, and what f·cos is multiplied by.
+struct Aim {
+    is_given: bool,
+    direction: vec3<f32>,
+    scale: f32,
+}
+
 // Adds the light of what the ray meets and of what shines on it, and sends the path on.
-fn visit(path: ptr<function, PathState>, hit: SlotHit, draws: Draws) -> Left {
+fn visit(path: ptr<function, PathState>, hit: SlotHit, draws: Draws, aim: Aim) -> Left {
     let end = Left(false, false, false, vec3<f32>(0.0f));
     let direction_in = (*path).direction;
     let ball = nearest_sphere((*path).origin, direction_in, hit.t);
@@ -124,8 +131,13 @@ fn visit(path: ptr<function, PathState>, hit: SlotHit, draws: Draws) -> Left {
     if material.kind == MATERIAL_OPAQUE && params.environment.light_count > 0u {
         add_direct_light(path, surface, material, frame, wo, draws, base, choice.x);
     }
-    let uv = draw_pair(draws, base);
-    let scattered = scatter(material, surface, wo, to_unit(choice.y), to_unit(uv.x), to_unit(uv.y));
+    var scattered: BsdfSample;
+    if aim.is_given && material.kind == MATERIAL_OPAQUE {
+        scattered = aimed(material, surface.albedo, frame, surface.shading_normal, wo, aim);
+    } else {
+        let uv = draw_pair(draws, base);
+        scattered = scatter(material, surface, wo, to_unit(choice.y), to_unit(uv.x), to_unit(uv.y));
+    }
     if all(scattered.direction == vec3<f32>(0.0f)) {
         return end;
     }
@@ -252,6 +264,25 @@ fn add_direct_light(
         weight = 1.0f / (light.pdf + value.pdf);
     }
     add_light(path, (*path).vertices + 1u, unshadowed * weight);
+}
+
+// What an opaque surface scatters along a direction that is given.
+fn aimed(
+    material: MaterialRecord,
+    albedo: vec3<f32>,
+    frame: Basis,
+    normal: vec3<f32>,
+    wo: vec3<f32>,
+    aim: Aim,
+) -> BsdfSample {
+    let d = aim.direction;
+    let wi = vec3<f32>(
+        dot_product(d, frame.tangent),
+        dot_product(d, frame.bitangent),
+        dot_product(d, normal),
+    );
+    let value = evaluate(material, albedo, wo, wi);
+    return BsdfSample(wi, value.f_cos * aim.scale, value.pdf);
 }
 
 fn scatter(

@@ -9,7 +9,8 @@ mod values;
 pub use compare::CompareArgs;
 pub use conform::ConformArgs;
 pub use render::{
-    ConeName, LoadArgs, MethodName, MissesName, ModeName, ProgressMode, RenderArgs, Show, ToneArgs,
+    ConeName, GatherName, LoadArgs, MethodName, MissesName, ModeName, ProgressMode, RenderArgs, Show,
+    ToneArgs,
 };
 pub use scene::{ConvertArgs, InspectArgs, SceneCommand};
 pub use values::{BackendChoice, Bounces, FrameRange, Size};

@@ -185,6 +185,15 @@ pub enum MissesName {
     Leave,
 }
 
+/// How the first vertex of a path looks around.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum GatherName {
+    /// Along directions that are drawn
+    Off,
+    /// Along all directions of the set in turn: nothing is left to chance; samples come in multiples of their number
+    All,
+}
+
 /// Knobs of the method slhb.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Method slhb")]
@@ -204,6 +213,9 @@ pub struct SlhbArgs {
     /// What becomes of rays that lookups find nothing for
     #[arg(long, value_name = "HOW", env = "TWINLIGHT_MISSES", default_value = "trace")]
     pub misses: MissesName,
+    /// Whether the first vertex of each path gathers light along all directions
+    #[arg(long, value_name = "WHAT", env = "TWINLIGHT_GATHER", default_value = "off")]
+    pub gather: GatherName,
 }
 
 fn direction_set(text: &str) -> Result<DirectionSet, String> {

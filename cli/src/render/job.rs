@@ -1,6 +1,6 @@
 //! What to render: flags before the scene's own settings before defaults.
 
-use crate::args::{Bounces, ConeName, MethodName, MissesName, RenderArgs, Size};
+use crate::args::{Bounces, ConeName, GatherName, MethodName, MissesName, RenderArgs, Size};
 use crate::exit::{Failure, Stage};
 use crate::source::Prepared;
 use clap::ValueEnum;
@@ -61,6 +61,11 @@ impl Job {
         if samples == 0 || samples > UNLIMITED_SAMPLES {
             return Err(input("render.spp", format!("{samples} is not within 1 and {UNLIMITED_SAMPLES}")));
         }
+        let samples = if args.slhb.gather == GatherName::All {
+            rounds_of(args.slhb.directions.len() as u32, samples, args.spp)?
+        } else {
+            samples
+        };
         let settings = Settings {
             width: size.0,
             height: size.1,
@@ -86,7 +91,19 @@ impl Job {
             layers: knobs.layers.0,
             cone: knobs.cone == ConeName::Auto,
             trace_misses: knobs.misses == MissesName::Trace,
+            gather: knobs.gather == GatherName::All,
         };
         Ok(Self { method, lookups, settings, time, camera })
+    }
+}
+
+/// Samples in which each direction has the same share: `samples` rounded up, unless they were asked for.
+fn rounds_of(directions: u32, samples: u32, asked: Option<u32>) -> Result<u32, Failure> {
+    let rounded = samples.div_ceil(directions).saturating_mul(directions).min(UNLIMITED_SAMPLES);
+    match asked {
+        Some(spp) if !spp.is_multiple_of(directions) => Err(Failure::Usage(format!(
+            "--spp {spp}: --gather all shares samples among {directions} directions: ask for {rounded}, or another multiple"
+        ))),
+        _ => Ok(rounded),
     }
 }

@@ -81,6 +81,7 @@ pub fn json(
                 "size": job.lookups.size,
                 "layers": job.lookups.layers,
                 "cone": job.lookups.cone,
+                "gather": job.lookups.gather,
                 "trace_misses": job.lookups.trace_misses,
             })),
             "size": [settings.width, settings.height],

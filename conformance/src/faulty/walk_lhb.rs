@@ -5,7 +5,7 @@ use super::{FaultyMesh, FaultyScene};
 use crate::faults::Fault;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbBuffers, LhbElement};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams, UNLIMITED_BOUNCES};
-use twinlight_core::kernels::walk_lhb::{CONE, TRACE_MISSES, WalkLhbBlock, WalkLhbParams};
+use twinlight_core::kernels::walk_lhb::{CONE, GATHER, TRACE_MISSES, WalkLhbBlock, WalkLhbParams};
 use twinlight_core::lattice::View;
 use twinlight_core::scene::{CompiledScene, LIGHT_TRIANGLE, NONE};
 use twinlight_core::{Backend, Result};
@@ -97,6 +97,7 @@ fn lookup(fault: Fault, block: &WalkLhbBlock) -> WalkLhbBlock {
     match fault {
         Fault::WalkNoCone => WalkLhbBlock { flags: block.flags & !CONE, ..*block },
         Fault::WalkLosesMisses => WalkLhbBlock { flags: block.flags & !TRACE_MISSES, ..*block },
+        Fault::WalkNoGather => WalkLhbBlock { flags: block.flags & !GATHER, ..*block },
         Fault::WalkNoPatterns => WalkLhbBlock { interleave: 0, ..*block },
         Fault::WalkNoLift => WalkLhbBlock { lift: 0.0, ..*block },
         Fault::WalkScale => WalkLhbBlock { steps_per_unit: block.steps_per_unit / 1.05, ..*block },

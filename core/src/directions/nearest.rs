@@ -1,6 +1,6 @@
 //! The nearest direction in constant time.
 
-use super::DirectionSet;
+use super::{DirectionSet, OnLine};
 use crate::error::{Error, Result};
 use crate::math::octahedral::{INDEX, LAST, STEPS, nearest_direction};
 use glam::{DVec3, Vec3};
@@ -104,6 +104,14 @@ impl NearestMap {
             *word = *word & !INDEX | on_line.line << 1 | u32::from(on_line.reversed);
         }
         words
+    }
+
+    /// What [`crate::kernels::walk_lhb`] gathers along: for each direction of the set its ray, as in [`NearestMap::ray_words`], and the bits
+    /// of its solid angle in f32.
+    pub fn gather_words(set: &DirectionSet) -> Vec<u32> {
+        let ray = |on_line: &OnLine| on_line.line << 1 | u32::from(on_line.reversed);
+        let words = set.on_lines().iter().zip(set.solid_angles());
+        words.flat_map(|(on_line, &angle)| [ray(on_line), (angle as f32).to_bits()]).collect()
     }
 
     /// Length of the longest list: the most products that one call compares.

@@ -24,6 +24,10 @@
 //!
 //! 4. *Interleaved sampling.* With [`WalkLhbBlock::interleave`] n > 1, the pixel (x, y) draws the numbers of the pixel (x mod n, y mod n): each
 //!    n × n tile holds the same patterns, whose noise [`crate::kernels::filter_indirect`] averages.
+//! 5. *Gathering.* With [`GATHER`], light at the first vertex of a path, if that is opaque, is a sum over all D directions of the set instead
+//!    of an integral over drawn ones: sample s goes along direction s mod D, with the weight D·Ω·f·cos θ, Ω the solid angle that is nearer to
+//!    it than to others, and ends where that does not leave the surface. With a multiple of D samples each direction has the same
+//!    share. Its density in 3 is that of scattering, as if it had been drawn: the weights still add up to 1.
 //!
 //! *Shapes.* The [`crate::kernels::rasterize_lhb::LhbBuffers`] of the set's lines, all layers, and the views they were made with;
 //! the mesh is the scene's ([`crate::lattice::LatticeMesh::of_scene`]), so that its triangles are the scene's slots; `film` as `trace_paths`.
@@ -48,6 +52,9 @@ pub const CONE: u32 = 1;
 /// [`WalkLhbBlock::flags`]: rays whose lookup finds nothing, or an emissive triangle, are traced.
 pub const TRACE_MISSES: u32 = 2;
 
+/// [`WalkLhbBlock::flags`]: the first vertex gathers along all directions.
+pub const GATHER: u32 = 4;
+
 /// What lookups need to know of a scene and its buffers.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -68,10 +75,16 @@ pub struct WalkLhbBlock {
     pub subpixel_bits: u32,
     /// Cells per row of the directional map.
     pub map_resolution: u32,
-    /// Sum of [`CONE`] and [`TRACE_MISSES`], or 0.
+    /// Sum of [`CONE`], [`TRACE_MISSES`] and [`GATHER`], or 0.
     pub flags: u32,
     /// Pixels per row and column of an interleaved pattern; 0 and 1 give every pixel numbers of its own.
     pub interleave: u32,
+    /// Where in the map's buffer the D directions to gather along begin, two words each: the ray, and the bits of its solid angle.
+    pub gather_begin: u32,
+    /// D; at least 1 with [`GATHER`].
+    pub gather_count: u32,
+    /// Unused, 0.
+    pub padding: [u32; 2],
 }
 
 /// Parameters of one call.
@@ -113,6 +126,11 @@ impl WalkLhbParams {
         let cells = lookup.map_resolution as usize * lookup.map_resolution as usize;
         if map_len < cells {
             return Err(Error::invalid("walk_lhb map", format!("{map_len} words of a map of {cells} cells")));
+        }
+        let (begin, count) = (u64::from(lookup.gather_begin), u64::from(lookup.gather_count));
+        if lookup.flags & GATHER != 0 && (count == 0 || begin + 2 * count > map_len as u64) {
+            let what = format!("{count} directions from word {begin} on, of {map_len}");
+            return Err(Error::invalid("walk_lhb gather", what));
         }
         Ok(())
     }

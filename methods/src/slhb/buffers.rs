@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 use twinlight_core::directions::{DirectionSet, NearestMap};
 use twinlight_core::kernels::rasterize_lhb::{CAP_NEAR, Lhb, PATH_AUTO, RasterizeLhbParams};
-use twinlight_core::kernels::walk_lhb::{CONE, TRACE_MISSES, WalkLhbBlock};
+use twinlight_core::kernels::walk_lhb::{CONE, GATHER, TRACE_MISSES, WalkLhbBlock};
 use twinlight_core::lattice::{Lattice, LatticeMesh, View, subpixel_bits};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, Result};
@@ -21,13 +21,16 @@ pub struct LookupSettings {
     pub cone: bool,
     /// Whether rays that lookups find nothing for are traced, because lines beside a silhouette lose light.
     pub trace_misses: bool,
+    /// Whether light at first vertices is a sum over all directions: the deterministic gather. Samples are best a multiple of their
+    /// number.
+    pub gather: bool,
 }
 
 impl Default for LookupSettings {
     fn default() -> Self {
         let directions =
             DirectionSet::icosahedron(2).unwrap_or_else(|_| unreachable!("a size that the set has"));
-        Self { directions, size: 128, layers: None, cone: true, trace_misses: true }
+        Self { directions, size: 128, layers: None, cone: true, trace_misses: true, gather: false }
     }
 }
 
@@ -85,6 +88,7 @@ pub fn build<B: Backend>(
     let lhb = backend.rasterize_lhb(&mesh, &views, &params)?;
     let build_time = start.elapsed();
     let map = NearestMap::new(&settings.directions);
+    let mut words = map.ray_words(&settings.directions);
     let lookup = WalkLhbBlock {
         centre: lattice.centre().as_vec3().to_array(),
         steps_per_unit: (1.0 / lattice.step()) as f32,
@@ -94,10 +98,16 @@ pub fn build<B: Backend>(
         size,
         subpixel_bits: subpixel_bits(size),
         map_resolution: map.resolution(),
-        flags: flag(settings.cone, CONE) | flag(settings.trace_misses, TRACE_MISSES),
+        flags: flag(settings.cone, CONE)
+            | flag(settings.trace_misses, TRACE_MISSES)
+            | flag(settings.gather, GATHER),
         interleave: 0,
+        gather_begin: words.len() as u32,
+        gather_count: settings.directions.len() as u32,
+        padding: [0; 2],
     };
-    let map = backend.upload(&map.ray_words(&settings.directions))?;
+    words.extend(NearestMap::gather_words(&settings.directions));
+    let map = backend.upload(&words)?;
     Ok(Buffers { mesh, lhb, views, map, lookup, build_time })
 }
 

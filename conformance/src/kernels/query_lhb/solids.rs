@@ -36,6 +36,9 @@ fn block(size: u32) -> WalkLhbBlock {
         map_resolution: 2,
         flags: 0,
         interleave: 0,
+        gather_begin: 0,
+        gather_count: 0,
+        padding: [0; 2],
     }
 }
 

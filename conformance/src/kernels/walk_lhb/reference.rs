@@ -8,13 +8,13 @@ use crate::trial::{Check, Context, Failure, Listing, ensure, list_trials};
 use twinlight_core::Backend;
 use twinlight_core::directions::DirectionSet;
 use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsParams};
-use twinlight_core::scene::CompiledScene;
-use twinlight_fixtures::scenes::builtin;
+use twinlight_core::scene::{CompiledScene, Light};
+use twinlight_fixtures::scenes::{builtin, cornell};
 use twinlight_methods::slhb::LookupSettings;
 
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "walk_lhb": error_falls_with_resolution, the_cone_smooths, misses_are_traced, lamps_close_by,
-        lookups_are_looked_up,
+        gathered_light, lookups_are_looked_up,
     );
 }
 
@@ -93,6 +93,7 @@ fn the_cone_smooths<B: Backend>(cx: &Context<'_, B>) -> Check {
             layers: None,
             cone,
             trace_misses: true,
+            gather: false,
         };
         let prepared = Prepared::with(cx.backend, &compiled, &settings)?;
         errors.push(Picture::of(&walked(cx.backend, &prepared, &call)?).error(&reference));
@@ -111,7 +112,7 @@ fn misses_are_traced<B: Backend>(cx: &Context<'_, B>) -> Check {
     let mut ratios = Vec::new();
     for trace_misses in [true, false] {
         let directions = "icosahedron:80".parse()?;
-        let settings = LookupSettings { directions, size: 16, layers: None, cone: true, trace_misses };
+        let settings = LookupSettings { directions, size: 16, trace_misses, ..LookupSettings::default() };
         let prepared = Prepared::with(cx.backend, &compiled, &settings)?;
         ratios.push(Picture::of(&walked(cx.backend, &prepared, &call)?).light / reference);
     }
@@ -130,6 +131,40 @@ fn lamps_close_by<B: Backend>(cx: &Context<'_, B>) -> Check {
     let prepared = Prepared::with(cx.backend, &compiled, &settings)?;
     let ratio = Picture::of(&walked(cx.backend, &prepared, &call)?).light / reference;
     ensure((ratio - 1.0).abs() < 0.05, || format!("{ratio:.4} of the reference's light"))
+}
+
+/// All directions of the set instead of as many drawn ones: the same light. Where the lamp is a point, numbers choose points of pixels alone,
+/// which decides little for most of them. Measured: 0.992 of the light, 0.46 of the noise.
+fn gathered_light<B: Backend>(cx: &Context<'_, B>) -> Check {
+    super::pictures_wanted(cx)?;
+    let mut scene = cornell();
+    scene.materials.iter_mut().for_each(|material| material.emission = [0.0; 3]);
+    scene.lights.push(Light::Point { position: [278.0, 400.0, 280.0], intensity: [1e6; 3] });
+    let compiled = compiled(&scene);
+    let call = params(&scene, &compiled, (SIDE, SIDE), 320, Some(2))?;
+    let mut films = Vec::new();
+    for gather in [true, false] {
+        let settings = LookupSettings { gather, ..LookupSettings::default() };
+        let prepared = Prepared::with(cx.backend, &compiled, &settings)?;
+        for seed in [1, 2] {
+            films.push(walked(cx.backend, &prepared, &TracePathsParams { seed, ..call })?);
+        }
+    }
+    let ratio = Picture::of(&films[0]).light / Picture::of(&films[2]).light;
+    let noise = [median_difference(&films[0], &films[1]), median_difference(&films[2], &films[3])];
+    ensure((ratio - 1.0).abs() < 0.02 && noise[0] < 0.7 * noise[1], || {
+        format!("{ratio:.4} of the light, noise {noise:.5?}")
+    })
+}
+
+/// Of the indirect light of two films' pixels, relative to its sum.
+fn median_difference(a: &[FilmTexel], b: &[FilmTexel]) -> f64 {
+    let green = |texel: &FilmTexel| wide(texel.indirect[1]) as f64;
+    let pairs = a.iter().zip(b).map(|(a, b)| (green(a), green(b)));
+    let mut apart: Vec<f64> =
+        pairs.filter(|(a, b)| a + b > 0.0).map(|(a, b)| (a - b).abs() / (a + b)).collect();
+    apart.sort_by(f64::total_cmp);
+    apart[apart.len() / 2]
 }
 
 /// Rays are looked up: with eight directions the picture is another one than the reference, by more than its noise.
