@@ -6,6 +6,8 @@ use twinlight_backend_gpu::kernels;
 use twinlight_backend_gpu::reflect::{self, Access};
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_backend_gpu::strict;
+use twinlight_core::accuracy::Accuracy;
+use twinlight_core::kernels as contracts;
 
 /// Functions that a kernel may call. Not in it: whatever two adapters of ours were seen to compute differently
 /// (normalize, mix, fract, smoothstep, step, unpack*, pack2x16float, every transcendental), and what WGSL lets real
@@ -91,6 +93,30 @@ fn banned_builtins_are_found() {
         let found = probe(&format!("let y = {expression};"));
         assert_eq!(found.len(), 1, "{expression}: {found:?}");
     }
+}
+
+/// What an adapter may do to floats, fuse, reassociate, flush or miss by units in the last place, can't move what has none.
+#[test]
+fn exact_kernels_have_no_floats() {
+    let exact = [
+        ("scan", contracts::scan::ACCURACY),
+        ("sort", contracts::sort::ACCURACY),
+        ("rasterize_lhb", contracts::rasterize_lhb::ACCURACY),
+        ("merge_lhb", contracts::merge_lhb::ACCURACY),
+        ("query_lhb", contracts::query_lhb::ACCURACY),
+    ];
+    let has_floats = |source: &KernelSource| {
+        let module = source.check().expect("checked above").module;
+        module.types.iter().any(|(_, ty)| is_float(&ty.inner))
+    };
+    for (stem, accuracy) in exact {
+        assert!(matches!(accuracy, Accuracy::Exact { .. }), "{stem}: {accuracy:?}");
+        let source = kernels::ALL.iter().find(|source| source.stem == stem).expect("a kernel");
+        assert!(!has_floats(source), "{stem} has a float");
+    }
+    // The control, and the list is whole.
+    let with_floats = kernels::ALL.iter().filter(|source| has_floats(source)).count();
+    assert_eq!(with_floats + exact.len(), kernels::ALL.len());
 }
 
 #[test]

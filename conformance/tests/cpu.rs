@@ -2,6 +2,9 @@
 
 #[path = "common/list.rs"]
 mod list;
+#[cfg(target_arch = "x86_64")]
+#[path = "common/rounding.rs"]
+mod rounding;
 #[path = "common/suite.rs"]
 mod suite;
 
@@ -28,6 +31,11 @@ fn main() -> ExitCode {
     list.add("cpu d7_stopped_anywhere".into(), || cross::judge(d7_stopped_anywhere()));
     #[cfg(target_arch = "x86_64")]
     list.add("cpu d10_host_flushes_subnormals".into(), || cross::judge(d10_host_flushes_subnormals()));
+    #[cfg(target_arch = "x86_64")]
+    for (name, bits) in rounding::ADVERSARIES {
+        let check = move || cross::judge(rounding::adversary_rounds(bits));
+        list.add(format!("cpu adversary_rounds {name}"), check);
+    }
     list.run()
 }
 
@@ -94,20 +102,7 @@ fn d7_stopped_anywhere() -> Check {
 /// A host program that set flush-to-zero and denormals-are-zero: integers and ordinary floats are untouched.
 #[cfg(target_arch = "x86_64")]
 fn d10_host_flushes_subnormals() -> Check {
-    const FLUSH: u32 = 1 << 15 | 1 << 6;
-    let set = |on: bool| {
-        let mut state = 0_u32;
-        // SAFETY: stores and loads this thread's MXCSR from and to a local; bits 15 and 6 only change how subnormals
-        // are treated.
-        unsafe {
-            std::arch::asm!("stmxcsr [{}]", in(reg) &mut state);
-            state = if on { state | FLUSH } else { state & !FLUSH };
-            std::arch::asm!("ldmxcsr [{}]", in(reg) &state);
-        }
-    };
-    // A pool of one thread that the host has set up so.
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).start_handler(move |_| set(true));
-    let pool = pool.build().map_err(failed)?;
+    let pool = rounding::pool_with(rounding::FLUSH)?;
     let flushing = pool.install(|| {
         let options = Options {
             effort: Effort::Quick,

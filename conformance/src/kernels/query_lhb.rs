@@ -7,6 +7,7 @@
 //! query's own; answers are compared exactly.
 
 mod cases;
+mod hard;
 mod inputs;
 mod laws;
 mod limits;
@@ -27,6 +28,7 @@ use twinlight_fixtures::random::Random;
 pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     cases::list(list);
     limits::list(list);
+    hard::list(list);
     laws::list(list);
     solids::list(list);
     rooms::list(list);

@@ -8,6 +8,7 @@
 
 mod cases;
 mod laws;
+mod moved;
 mod reference;
 mod walked;
 
@@ -27,6 +28,7 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     );
     cases::list(list);
     laws::list(list);
+    moved::list(list);
     reference::list(list);
 }
 

@@ -85,16 +85,18 @@ fn aligned_meshes<B: Backend>(cx: &Context<'_, B>) -> Check {
     })
 }
 
-/// The same triangles on both sides: every element ties with a copy of another number.
+/// The same triangles on both sides: every element ties with a copy of another number. Pictures are small, because a pixel may
+/// have hundreds of them.
 fn g7_copies_across_meshes<B: Backend>(cx: &Context<'_, B>) -> Check {
-    hold(cx, (case(duplicates()), cap()), |(Case { mesh, views, params }, (layer_cap, cap_side))| {
-        let params = RasterizeLhbParams { layer_cap, cap_side, ..params };
-        let reversed = mesh.triangles().iter().rev().copied().collect();
-        let reversed = LatticeMesh::new(mesh.vertices().to_vec(), reversed)?;
-        for added in [&mesh, &reversed] {
-            promised(cx, [&mesh, added], &views, &params)?;
+    let shape = (duplicates(), 1..=24_u32, any::<u64>(), any::<bool>());
+    hold(cx, (shape, cap()), |((mesh, size, seed, reversed), (layer_cap, cap_side))| {
+        let params = RasterizeLhbParams { layer_cap, cap_side, ..RasterizeLhbParams::new(size) };
+        let mut triangles = mesh.triangles().to_vec();
+        if reversed {
+            triangles.reverse();
         }
-        Ok(())
+        let added = LatticeMesh::new(mesh.vertices().to_vec(), triangles)?;
+        promised(cx, [&mesh, &added], &views(&some_directions(2, seed), size), &params).map(|_| ())
     })
 }
 

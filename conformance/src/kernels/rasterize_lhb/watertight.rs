@@ -1,8 +1,11 @@
 //! Hard cases of shared edges and closed meshes. What is counted is winding: the faces of a pixel's list, fronts less backs,
 //! depend on nothing but the mesh's border, whatever rounding does to the vertices.
 
-use super::inputs::{front, lattice_directions, separate, snapped, some_directions, turned, views};
+use super::inputs::{
+    Case, any_mesh, case, front, lattice_directions, separate, snapped, some_directions, turned, views,
+};
 use super::{Checked, agrees, agrees_on_every_path, drawn, same};
+use crate::kernels::property::hold;
 use crate::oracle::rasterize_lhb::{Lists, Shown};
 use crate::trial::{Check, Context, Listing, ensure, list_trials};
 use glam::{DVec3, Vec3};
@@ -16,7 +19,7 @@ use twinlight_fixtures::random::Random;
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "rasterize_lhb":
         r1_shared_edge_has_one_owner, r1_border_decides_alone, r2_fan_around_a_centre, r2_spokes_through_centres,
-        r13_closed_meshes, r13_in_and_out_in_turn, r14_facing_is_exact,
+        r13_closed_meshes, r13_any_border_closed, r13_in_and_out_in_turn, r14_facing_is_exact,
     );
 }
 
@@ -185,6 +188,23 @@ fn r13_closed_meshes<B: Backend>(cx: &Context<'_, B>) -> Check {
         }
     }
     Ok(())
+}
+
+/// Whatever a mesh is, through itself, twice the same, with any number of triangles at an edge: once fans close its border, the
+/// winding of every line is 0.
+fn r13_any_border_closed<B: Backend>(cx: &Context<'_, B>) -> Check {
+    // Of one lattice step, so that corners at one place become one vertex and stay where they are.
+    let same_place = Lattice::new(DVec3::ZERO, 32_759.0)?;
+    hold(cx, case(any_mesh()), |Case { mesh, views, params }| {
+        let corner = |v: u32| DVec3::from(mesh.vertices()[v as usize].map(f64::from));
+        let welded = LatticeMesh::snap(&same_place, mesh.triangles().iter().map(|t| t.map(corner)))?;
+        let fans = meshes::fans_over_border(welded.triangles());
+        let all = welded.triangles().iter().chain(&fans).copied().collect();
+        let closed = LatticeMesh::new(welded.vertices().to_vec(), all)?;
+        let lists = drawn(cx, &closed, &views, &params)?;
+        let wound = windings(&lists).iter().filter(|winding| **winding != 0).count();
+        ensure(wound == 0, || format!("{wound} lines with a winding, {} fans", fans.len()))
+    })
 }
 
 /// Into a solid and out of it, in turn, wherever neighbours in a list are farther apart than both depths' roundings. Along the
