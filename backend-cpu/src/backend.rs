@@ -11,6 +11,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -224,6 +225,11 @@ impl Backend for CpuBackend {
     ) -> Result<Lhb<Self>> {
         params.check(views)?;
         self.run("rasterize_lhb", || kernels::rasterize_lhb::rasterize_lhb(self.isa, mesh, views, params))
+    }
+
+    fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>> {
+        params.check(kept, added, |buffer| buffer.as_slice().len())?;
+        self.run("merge_lhb", || kernels::merge_lhb::merge_lhb(kept, added, params))
     }
 
     fn query_lhb(

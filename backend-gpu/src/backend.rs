@@ -7,6 +7,7 @@ use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
 use crate::strict::Mode;
 use bytemuck::Pod;
+use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -15,7 +16,7 @@ use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
 use twinlight_core::kernels::walk_lhb::WalkLhbParams;
 use twinlight_core::lattice::{LatticeMesh, View};
 use twinlight_core::scene::CompiledScene;
-use twinlight_core::{Backend, BackendInfo, Result};
+use twinlight_core::{Backend, BackendInfo, Error, Result};
 
 /// The kernels in WGSL on one device.
 #[derive(Debug, Clone)]
@@ -139,6 +140,11 @@ impl Backend for GpuBackend {
         params: &RasterizeLhbParams,
     ) -> Result<Lhb<Self>> {
         rasterize_lhb::run(&self.device, mesh, views, params)
+    }
+
+    fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>> {
+        params.check(kept, added, GpuBuffer::len)?;
+        Err(Error::Unsupported("merge_lhb on GPUs".into()))
     }
 
     fn query_lhb(

@@ -11,6 +11,7 @@ mod walk_lhb;
 
 use crate::faults::Fault;
 use bytemuck::Pod;
+use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -141,6 +142,10 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &RasterizeLhbParams,
     ) -> Result<Lhb<Self>> {
         rasterize_lhb::rasterize_lhb(self.inner, self.fault, mesh, views, params)
+    }
+
+    fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>> {
+        self.inner.merge_lhb(kept, added, params)
     }
 
     fn query_lhb(

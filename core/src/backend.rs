@@ -1,6 +1,7 @@
 //! `Backend`: typed buffers and one method per kernel. The library's table of contents.
 
 use crate::error::Result;
+use crate::kernels::merge_lhb::MergeLhbParams;
 use crate::kernels::query_lhb::LhbQuery;
 use crate::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use crate::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -146,6 +147,13 @@ pub trait Backend {
         views: &[View],
         params: &RasterizeLhbParams,
     ) -> Result<Lhb<Self>>;
+
+    /// Layered hit buffers of what stays and of what moves, as one. Contract: [`crate::kernels::merge_lhb`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] for parameters that are out of range and for buffers that don't fit each other,
+    /// [`crate::Error::LimitExceeded`] or [`crate::Error::OutOfMemory`] when the lists are too many or too long for the device.
+    fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>>;
 
     /// What points see along the directions of views. Contract: [`crate::kernels::query_lhb`].
     ///
