@@ -57,3 +57,56 @@ fn show_draws_a_hit_buffer() {
     let two = ["render", "builtin:cornell", "--show", "lhb:0", "-o", "a.png", "-o", "b.png"];
     assert!(folder.run(&two).stderr.contains("--show draws one picture"));
 }
+
+/// A room that stays, in which a file's skin bends.
+fn moving_room() -> Folder {
+    let folder = Folder::new();
+    let all = twinlight::fixtures::files::all();
+    let bytes = &all.iter().find(|(path, _)| *path == "bending/bending.glb").expect("the fixture").1;
+    std::fs::write(folder.path("b.glb"), bytes).expect("a file of the test");
+    folder.write(
+        "room.toml",
+        "[[mesh]]\nname = 'b'\npath = 'b.glb'\n[[mesh]]\nname = 'room'\npath = 'builtin:cornell'\n[[instance]]\nmesh = 'b'\n\
+         translate = [180, 340, 280]\nscale = 60\n[[instance]]\nmesh = 'room'\n",
+    );
+    folder
+}
+
+/// What is kept from frame to frame doesn't show: any frame is the picture of its moment.
+fn frames_are_pictures_of_their_moments(backend: &str, small: &[&str]) {
+    let folder = moving_room();
+    let render = [
+        "render",
+        "room.toml",
+        "--method",
+        "slhb",
+        "--lhb-size",
+        "48",
+        "--bounces",
+        "3",
+        "--backend",
+        backend,
+    ];
+    let run = |more: &[&str]| folder.run(&[&render[..], small, more].concat()).ok();
+    run(&["--frames", "0..3", "--fps", "2", "-o", "a.exr"]);
+    run(&["--frames", "2..3", "--fps", "2", "-o", "b.exr"]);
+    run(&["--at", "0.5", "-o", "c.exr"]);
+    assert!(folder.read("a-0002.exr") == folder.read("b-0002.exr"));
+    assert!(folder.read("a-0001.exr") == folder.read("c.exr"));
+    assert!(folder.read("a-0001.exr") != folder.read("a-0002.exr"));
+    let result = |name: &str| {
+        let sidecar: serde_json::Value = serde_json::from_slice(&folder.read(name)).unwrap();
+        let count = |key: &str| sidecar["result"][key].as_u64().unwrap();
+        (count("lhb_elements_kept"), count("lhb_elements"))
+    };
+    let (kept, whole) = result("a-0002.json");
+    assert!(kept > 1000 && kept < whole, "{kept} of {whole}");
+    for first in ["a-0000.json", "b-0002.json", "c.json"] {
+        assert_eq!(result(first).0, 0, "{first}");
+    }
+}
+
+#[test]
+fn frames_on_the_cpu_are_pictures_of_their_moments() {
+    frames_are_pictures_of_their_moments("cpu", &["--size", "16x16", "--spp", "2", "--directions", "80"]);
+}
