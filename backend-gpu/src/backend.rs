@@ -2,7 +2,9 @@
 
 use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
-use crate::kernels::{query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths, walk_lhb};
+use crate::kernels::{
+    merge_lhb, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths, walk_lhb,
+};
 use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
 use crate::strict::Mode;
@@ -16,7 +18,7 @@ use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
 use twinlight_core::kernels::walk_lhb::WalkLhbParams;
 use twinlight_core::lattice::{LatticeMesh, View};
 use twinlight_core::scene::CompiledScene;
-use twinlight_core::{Backend, BackendInfo, Error, Result};
+use twinlight_core::{Backend, BackendInfo, Result};
 
 /// The kernels in WGSL on one device.
 #[derive(Debug, Clone)]
@@ -143,8 +145,7 @@ impl Backend for GpuBackend {
     }
 
     fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>> {
-        params.check(kept, added, GpuBuffer::len)?;
-        Err(Error::Unsupported("merge_lhb on GPUs".into()))
+        merge_lhb::run(&self.device, kept, added, params)
     }
 
     fn query_lhb(

@@ -5,12 +5,13 @@
 
 use std::mem::{offset_of, size_of};
 use twinlight_backend_gpu::kernels::{
-    self, path, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths, walk_lhb,
+    self, merge_lhb, path, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths, walk_lhb,
 };
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
-    query_lhb as query_contract, rasterize_lhb as lhb_contract, shade_primary as shade_contract,
-    trace as trace_contract, trace_paths as paths_contract, walk_lhb as walk_contract,
+    merge_lhb as merge_contract, query_lhb as query_contract, rasterize_lhb as lhb_contract,
+    shade_primary as shade_contract, trace as trace_contract, trace_paths as paths_contract,
+    walk_lhb as walk_contract,
 };
 use twinlight_core::transport::{intersect, lhb, light};
 use twinlight_core::{bvh, lattice, math, scene, transport};
@@ -131,6 +132,27 @@ fn twins() -> Vec<Twins> {
                 ("PATH_BLOCKS", lhb_contract::PATH_BLOCKS.into()),
                 ("PATH_LINEAR", lhb_contract::PATH_LINEAR.into()),
                 ("PATH_SPANS", lhb_contract::PATH_SPANS.into()),
+                ("CAP_FAR", lhb_contract::CAP_FAR.into()),
+            ],
+        },
+        Twins {
+            source: &merge_lhb::SOURCE,
+            structs: vec![
+                layout!(merge_lhb::MergeLhbBlock {
+                    call,
+                    list_count,
+                    kept_count,
+                    added_count,
+                    element_count,
+                    loop_rounds,
+                }),
+                layout!(merge_contract::MergeLhbParams { first_triangle, layer_cap, cap_side, padding }),
+                layout!(lhb_contract::LhbElement { surface, depth }),
+            ],
+            constants: vec![
+                ("WORKGROUP_SIZE", merge_lhb::WORKGROUP_SIZE.into()),
+                ("MALFORMED", merge_lhb::MALFORMED.into()),
+                ("HAS_LONG_LISTS", merge_lhb::HAS_LONG_LISTS.into()),
                 ("CAP_FAR", lhb_contract::CAP_FAR.into()),
             ],
         },

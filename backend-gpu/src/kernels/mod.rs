@@ -3,6 +3,7 @@
 //! To add one: write the two files, add the module here and its [`KernelSource`] to [`ALL`], and the method to
 //! `backend.rs`. The tests `sources` and `layout` find it through [`ALL`].
 
+pub mod merge_lhb;
 pub mod path;
 pub mod query_lhb;
 pub mod rasterize_lhb;
@@ -21,6 +22,7 @@ pub const ALL: &[&KernelSource] = &[
     &scan::SOURCE,
     &sort::SOURCE,
     &rasterize_lhb::SOURCE,
+    &merge_lhb::SOURCE,
     &query_lhb::SOURCE,
     &trace::SOURCE,
     &shade_primary::SOURCE,

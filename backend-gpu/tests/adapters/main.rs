@@ -6,6 +6,7 @@ mod chunks;
 mod device;
 mod lhb;
 mod lookups;
+mod merges;
 mod scan;
 mod sort;
 mod strict;
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         device::CHECKS,
         lhb::CHECKS,
         lookups::CHECKS,
+        merges::CHECKS,
         scan::CHECKS,
         sort::CHECKS,
         strict::CHECKS,

@@ -5,8 +5,8 @@ use std::ops::Range;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement};
 use twinlight_core::{Error, Result};
 
-/// Offsets that are compared by their ends.
-const BLOCK: usize = 16;
+/// Lists that are copied together or not at all: fewer aren't worth the question whether they can be.
+pub(super) const BLOCK: usize = 8;
 
 /// Consecutive lists.
 #[derive(Debug, Clone, Copy)]
@@ -14,7 +14,7 @@ pub(super) struct Lists<'a> {
     /// Where each begins, and where the last ends.
     pub(super) offsets: &'a [u32],
     /// From where the first begins to where the last ends.
-    elements: &'a [LhbElement],
+    pub(super) elements: &'a [LhbElement],
     /// Empty without a cap.
     pub(super) left_out: &'a [u32],
 }
@@ -69,26 +69,26 @@ impl<'a> Lists<'a> {
         if rising { Ok(()) } else { Err(malformed()) }
     }
 
-    /// The elements of some lists.
+    /// Where some lists begin and end in `elements`.
     #[inline(always)]
-    pub(super) fn elements(&self, lists: Range<usize>) -> &'a [LhbElement] {
+    pub(super) fn places(&self, lists: Range<usize>) -> Range<usize> {
         let at = |list: usize| (self.offsets[list] - self.offsets[0]) as usize;
-        &self.elements[at(lists.start)..at(lists.end)]
+        at(lists.start)..at(lists.end)
     }
 
-    /// How many lists from `list` on are empty.
+    /// Where the blocks of empty lists from `list` on end.
     #[inline(always)]
-    pub(super) fn empty_from(&self, list: usize) -> usize {
-        let offsets = &self.offsets[list..];
-        let mut count = 0;
-        // Offsets rise: between two that are equal there is no other.
-        while offsets.get(count + BLOCK) == Some(&offsets[0]) {
-            count += BLOCK;
+    pub(super) fn empty_to(&self, list: usize) -> usize {
+        let mut end = list;
+        while end < self.len() {
+            let next = self.len().min(end + BLOCK);
+            // Offsets rise: between two that are equal there is no other.
+            if self.offsets[next] != self.offsets[list] {
+                break;
+            }
+            end = next;
         }
-        while offsets.get(count + 1) == Some(&offsets[0]) {
-            count += 1;
-        }
-        count
+        end
     }
 }
 

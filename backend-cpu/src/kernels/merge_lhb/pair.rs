@@ -1,10 +1,13 @@
 //! The same lists of both inputs, as one.
 
-use super::lists::Lists;
+use super::lists::{BLOCK, Lists};
 use std::ops::Range;
 use twinlight_core::Result;
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::rasterize_lhb::{CAP_FAR, LhbElement};
+
+/// What is read beyond the last list.
+const NOTHING: LhbElement = LhbElement { surface: 0, depth: 0 };
 
 /// A chunk's lists.
 #[derive(Debug, Clone, Copy)]
@@ -45,7 +48,7 @@ impl Pair<'_> {
 
     /// Moves the ends that `size` wrote to where the chunk begins.
     pub(super) fn shift(&self, ends: &mut [u32], begin: u32) {
-        ends.iter_mut().for_each(|end| *end += begin);
+        ends.iter_mut().for_each(|end| *end = end.wrapping_add(begin));
     }
 
     /// Writes where each list ends without a cap: where both inputs' do.
@@ -55,11 +58,8 @@ impl Pair<'_> {
     pub(super) fn add(&self, ends: &mut [u32]) -> Result<()> {
         self.kept.expect_rising()?;
         self.added.expect_rising()?;
-        for (end, (kept, added)) in
-            ends.iter_mut().zip(self.kept.offsets[1..].iter().zip(&self.added.offsets[1..]))
-        {
-            *end = kept + added;
-        }
+        let offsets = self.kept.offsets[1..].iter().zip(&self.added.offsets[1..]);
+        ends.iter_mut().zip(offsets).for_each(|(end, (kept, added))| *end = kept.wrapping_add(*added));
         Ok(())
     }
 
@@ -68,7 +68,7 @@ impl Pair<'_> {
         let place = |list: usize| if list == 0 { 0 } else { (ends[list - 1] - begin) as usize };
         let mut list = 0;
         while list < ends.len() {
-            let next = list + self.one_sided_from(list).max(1);
+            let next = ends.len().min(list + BLOCK).max(self.one_sided_to(list));
             if !self.copy(list..next, &mut out[place(list)..place(next)]) {
                 for list in list..next {
                     self.merge_list(list, &mut out[place(list)..place(list + 1)]);
@@ -78,19 +78,18 @@ impl Pair<'_> {
         }
     }
 
-    /// How many lists from `list` on are empty in the same one of the inputs.
+    /// Where the blocks of lists from `list` on end that are empty in the same one of the inputs.
     #[inline(always)]
-    fn one_sided_from(&self, list: usize) -> usize {
-        match self.added.empty_from(list) {
-            0 => self.kept.empty_from(list),
-            count => count,
-        }
+    fn one_sided_to(&self, list: usize) -> usize {
+        let end = self.added.empty_to(list);
+        if end > list { end } else { self.kept.empty_to(list) }
     }
 
     /// Copies lists that only one of the inputs has and no cap cuts; whether they are such.
     #[inline(always)]
     fn copy(&self, lists: Range<usize>, out: &mut [LhbElement]) -> bool {
-        let (kept, added) = (self.kept.elements(lists.clone()), self.added.elements(lists));
+        let kept = &self.kept.elements[self.kept.places(lists.clone())];
+        let added = &self.added.elements[self.added.places(lists)];
         if added.is_empty() && kept.len() == out.len() {
             out.copy_from_slice(kept);
         } else if kept.is_empty() && added.len() == out.len() {
@@ -104,27 +103,29 @@ impl Pair<'_> {
     /// Fills a list, element by element.
     #[inline(always)]
     fn merge_list(&self, list: usize, out: &mut [LhbElement]) {
-        let (kept, added) = (self.kept.elements(list..list + 1), self.added.elements(list..list + 1));
-        let (mut i, mut j) = (0, 0);
-        let mut next = || {
-            let is_added = match (kept.get(i), added.get(j)) {
-                (Some(kept), Some(added)) => added.depth < kept.depth,
-                (kept, _) => kept.is_none(),
-            };
-            if is_added {
-                j += 1;
-                self.renumbered(&added[j - 1])
-            } else {
-                i += 1;
-                kept[i - 1]
-            }
-        };
+        let (mut kept, mut added) = (self.kept.places(list..list + 1), self.added.places(list..list + 1));
         if self.params.cap_side == CAP_FAR {
             for _ in out.len()..kept.len() + added.len() {
-                next();
+                self.next(&mut kept, &mut added);
             }
         }
-        out.iter_mut().for_each(|out| *out = next());
+        out.iter_mut().for_each(|out| *out = self.next(&mut kept, &mut added));
+    }
+
+    /// Takes the next element of those that are left in two lists. Without a branch on what can't be foreseen: beyond the end of
+    /// a list is another list, or nothing, and either goes unused.
+    #[inline(always)]
+    fn next(&self, kept: &mut Range<usize>, added: &mut Range<usize>) -> LhbElement {
+        let at = |elements: &[LhbElement], i: usize| elements.get(i).copied().unwrap_or(NOTHING);
+        let (a, b) = (at(self.kept.elements, kept.start), at(self.added.elements, added.start));
+        let is_added = (kept.start == kept.end) | ((added.start < added.end) & (b.depth < a.depth));
+        kept.start += usize::from(!is_added);
+        added.start += usize::from(is_added);
+        let renumbered = self.renumbered(&b);
+        LhbElement {
+            surface: if is_added { renumbered.surface } else { a.surface },
+            depth: if is_added { b.depth } else { a.depth },
+        }
     }
 
     #[inline(always)]
