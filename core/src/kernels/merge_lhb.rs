@@ -5,14 +5,14 @@
 // oracle conformance/src/oracle/merge_lhb.rs
 //! `merge_lhb`: layered hit buffers of what stays and of what moves, as one.
 //!
-//! *Shapes.* [`LhbBuffers`](crate::kernels::rasterize_lhb::LhbBuffers) `kept` and `added`, of the same size N and the same V views, in; one of that size and
+//! *Shapes.* [`LhbBuffers`] `kept` and `added`, of the same size N and the same V views, in; one of that size and
 //! number of views out. *Units.* Those of [`crate::kernels::rasterize_lhb`].
 //!
 //! *Meaning.* For each list i, the elements of `kept`'s and those of `added`'s, in whose surfaces
 //! 2·[`MergeLhbParams::first_triangle`] is added (modulo 2³²). A merge: each list's elements stay in their order; of two that are next,
 //! the one with the lesser depth goes first, and of equal depths that of `kept`.
 //! With [`MergeLhbParams::layer_cap`] K > 0, each merged list keeps its first K elements
-//! ([`CAP_NEAR`](crate::kernels::rasterize_lhb::CAP_NEAR)) or its last ([`CAP_FAR`](crate::kernels::rasterize_lhb::CAP_FAR)), and `left_out[i]` is what both inputs left out and what this
+//! ([`CAP_NEAR`](crate::kernels::rasterize_lhb::CAP_NEAR)) or its last ([`CAP_FAR`]), and `left_out[i]` is what both inputs left out and what this
 //! cuts off, modulo 2³². Without a cap `left_out` is empty, and every offset is the sum of the two.
 //!
 //! *Promise.* Where `kept` was made of a mesh of `first_triangle` triangles and `added` of another, with the same views, cap and side, the
