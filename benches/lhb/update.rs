@@ -4,12 +4,14 @@ use super::clock::processor_seconds;
 use super::{Arguments, spread};
 use glam::DVec3;
 use std::time::Instant;
-use twinlight::Result;
 use twinlight::cpu::CpuBackend;
 use twinlight::fixtures::meshes::displaced_sphere;
-use twinlight::lattice::{Lattice, LatticeMesh};
+use twinlight::kernels::merge_lhb::MergeLhbParams;
+use twinlight::kernels::rasterize_lhb::RasterizeLhbParams;
+use twinlight::lattice::{Lattice, LatticeMesh, View};
 use twinlight::methods::slhb::{Buffers, Kept, LookupSettings, build};
 use twinlight::scene::{CompiledScene, Limits, Scene, Transform, compile};
+use twinlight::{Backend, Result};
 
 /// Cuts of an icosahedron's edge: 16,820 and 84,500 triangles.
 const OBJECTS: [u32; 2] = [29, 65];
@@ -113,17 +115,57 @@ fn updates(
             ratio.2
         );
     }
-    snapping(&frames[0])
+    steps(backend, frames, settings)
 }
 
-/// What of the second row is snapping.
-fn snapping(scene: &CompiledScene) -> Result<()> {
-    let lattice = Lattice::of_scene(scene)?;
-    let milliseconds = |triangles| {
-        let start = Instant::now();
-        LatticeMesh::of_triangles(&lattice, triangles).map(|_| start.elapsed().as_secs_f64() * 1e3)
+/// What an update is made of.
+fn steps(backend: &CpuBackend, frames: &[CompiledScene], settings: &LookupSettings) -> Result<()> {
+    let lattice = Lattice::of_scene(&frames[0])?;
+    let (staying, _) = frames[0].parts();
+    let lines = settings.directions.lines().iter();
+    let views = lines.map(|&line| View::along(line, settings.size)).collect::<Result<Vec<_>>>()?;
+    let params = RasterizeLhbParams::new(settings.size);
+    let merging = MergeLhbParams {
+        first_triangle: frames[0].moving_from,
+        layer_cap: 0,
+        cap_side: params.cap_side,
+        padding: 0,
     };
-    let (object, everything) = (milliseconds(scene.parts().1)?, milliseconds(&scene.triangles)?);
-    println!("    snapping: {object:.1} ms, everything {everything:.1} ms");
+    let first = LatticeMesh::of_triangles(&lattice, staying)?;
+    let kept = backend.rasterize_lhb(&backend.upload_mesh(&first)?, &views, &params)?;
+    let mut times: [Vec<f64>; 4] = Default::default();
+    for frame in frames {
+        let mut start = Instant::now();
+        let mut lap = |step: usize| {
+            times[step].push(start.elapsed().as_secs_f64() * 1e3);
+            start = Instant::now();
+        };
+        let object = LatticeMesh::of_triangles(&lattice, frame.parts().1)?;
+        let resident = backend.upload_mesh(&object)?;
+        lap(0);
+        let added = backend.rasterize_lhb(&resident, &views, &params)?;
+        lap(1);
+        backend.merge_lhb(&kept, &added, &merging)?;
+        lap(2);
+        backend.upload_mesh(&first.followed_by(&object)?)?;
+        lap(3);
+    }
+    let [snap, rasterize, merge, join] = times.map(spread);
+    println!(
+        "    of which: snap {:.1} ms ({:.1} to {:.1}), rasterize {:.1} ({:.1} to {:.1}), merge {:.1} ({:.1} to {:.1}), planes of the \
+         whole {:.1} ({:.1} to {:.1})",
+        snap.0,
+        snap.1,
+        snap.2,
+        rasterize.0,
+        rasterize.1,
+        rasterize.2,
+        merge.0,
+        merge.1,
+        merge.2,
+        join.0,
+        join.1,
+        join.2
+    );
     Ok(())
 }

@@ -22,14 +22,13 @@ use twinlight_core::{Backend, Error, Result};
 /// use twinlight_methods::slhb::{Kept, LookupSettings};
 ///
 /// # fn main() -> twinlight_core::Result<()> {
-/// let mut scene = twinlight_fixtures::scenes::builtin("cornell").expect("there is one");
-/// let block = scene.instances.len() - 1;
-/// scene.instances[block].moves = true;
+/// let mut scene = twinlight_fixtures::scenes::builtin("axis").expect("there is one, a cube on a floor");
+/// scene.instances[0].moves = true;
 /// let backend = CpuBackend::new();
 /// let settings = LookupSettings { directions: "icosahedron:20".parse()?, size: 16, ..LookupSettings::default() };
 /// let mut kept = Kept::new();
 /// for frame in 0..3 {
-///     scene.instances[block].transform.translation.x = 10.0 * f64::from(frame);
+///     scene.instances[0].transform.translation.x = 0.5 * f64::from(frame);
 ///     let buffers = kept.build(&backend, &compile(&scene, &Limits::default())?, &settings)?;
 ///     assert_eq!(buffers.kept_elements > 0, frame > 0);
 /// }

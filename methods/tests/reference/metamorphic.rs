@@ -75,7 +75,7 @@ fn g13_mirrored_instance() {
 /// Other slots, another hierarchy, the same hits and lights.
 #[test]
 fn what_may_move_looks_the_same() {
-    for name in ["cornell", "materials"] {
+    for name in ["axis", "materials", "veach"] {
         let mut scene = builtin(name).unwrap();
         let expected = film(&scene, &settings(24, 4));
         for part in 0..2 {

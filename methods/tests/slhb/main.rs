@@ -1,5 +1,6 @@
 //! Layered hit buffers as a method: bits, bias against the reference tracer with equal bounces, and what the knobs do.
 
+mod cramped;
 mod kept;
 
 use twinlight_backend_cpu::CpuBackend;
