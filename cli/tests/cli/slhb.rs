@@ -110,3 +110,12 @@ fn frames_are_pictures_of_their_moments(backend: &str, small: &[&str]) {
 fn frames_on_the_cpu_are_pictures_of_their_moments() {
     frames_are_pictures_of_their_moments("cpu", &["--size", "16x16", "--spp", "2", "--directions", "80"]);
 }
+
+/// On whichever adapter comes first, where adapters are demanded.
+#[cfg(feature = "gpu")]
+#[test]
+fn frames_on_a_gpu_are_pictures_of_their_moments() {
+    if std::env::var("TWINLIGHT_REQUIRE_GPU").is_ok_and(|value| value == "1") {
+        frames_are_pictures_of_their_moments("gpu", &["--size", "8x8", "--spp", "1", "--directions", "20"]);
+    }
+}
