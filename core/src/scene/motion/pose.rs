@@ -32,7 +32,7 @@ impl Scene {
     /// The scene as it stands at a time, in seconds; before the first keyframe it is as there, after the last likewise
     /// (glTF 2.0, §3.11). Instances that follow nodes get their transforms, meshes with skins their positions and normals;
     /// all else stays, so that the same triangle has the same number at all times. The result stands still, and its instances
-    /// say which of them move ([`super::Instance::moves`]).
+    /// say which of them move ([`crate::scene::Instance::moves`]).
     ///
     /// What is scaled to nothing, as animations hide objects, becomes a point and keeps its triangles:
     /// [`Transform::or_point`].
