@@ -1,5 +1,6 @@
 //! Typed arrays in host memory, and allocations that fail instead of aborting.
 
+use crate::huge;
 use bytemuck::Zeroable;
 use twinlight_core::{Error, Result};
 
@@ -49,7 +50,10 @@ pub(crate) fn try_copy<T: Clone>(data: &[T]) -> Result<Vec<T>> {
 /// `len` zeroed elements, from pages that the system zeroes when they are first touched.
 pub(crate) fn try_zeroed<T: Zeroable>(len: usize) -> Result<Vec<T>> {
     match bytemuck::allocation::try_zeroed_slice_box(len) {
-        Ok(zeroes) => Ok(Vec::from(zeroes)),
+        Ok(mut zeroes) => {
+            huge::advise(&mut zeroes);
+            Ok(Vec::from(zeroes))
+        }
         Err(()) => Err(out_of_memory::<T>(len)),
     }
 }
@@ -73,6 +77,7 @@ mod tests {
         assert_eq!(try_copy(&[1_u32, 2]).unwrap(), [1, 2]);
         assert_eq!(try_copy::<u32>(&[]).unwrap(), []);
         assert_eq!(try_zeroed::<u64>(3).unwrap(), [0; 3]);
+        assert!(try_zeroed::<u64>(3 << 20).unwrap().iter().all(|&word| word == 0));
         assert_eq!(try_zeroed::<u64>(0).unwrap(), []);
     }
 }

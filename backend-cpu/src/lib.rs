@@ -21,6 +21,7 @@
 mod backend;
 mod buffer;
 pub mod bvh8;
+mod huge;
 mod kernels;
 mod mesh;
 mod parallel;

@@ -1,22 +1,25 @@
-//! Layered hit buffers: triangle-views per second, what an element costs beside writing it to memory, and lookups beside
-//! traced rays.
+//! Layered hit buffers: triangle-views per second, what an element costs beside writing it to memory, lookups beside
+//! traced rays, and updates beside whole builds.
 //!
-//! `cargo bench -p twinlight --bench lhb -- [SCENE…] [--directions N] [--size N] [--rounds N] [--path 0..4]`
+//! `cargo bench -p twinlight --bench lhb -- [SCENE…] [--directions N] [--size N] [--rounds N] [--path 0..4]
+//! [--part builds|lookups|updates]`
 //!
 //! Builds draw a view per direction, though opposite directions share one: that is the work that is compared. The floor is
 //! filling as many bytes of the same vector from the same threads, in turn with the builds. Lookups are cosine-weighted rays
-//! from random points of the scene's surfaces, in the order of their directions; the rays traced beside them are the same.
+//! from random points of the scene's surfaces, in the order of their directions; the rays traced beside them are the same. Updates
+//! and whole builds are in turn, of the same frames, a view per line: what stays is kept, and an object is moved.
 
 #[path = "../../backend-cpu/benches/trace/clock.rs"]
 mod clock;
 mod queries;
 
 mod build;
+mod update;
 
 use twinlight::cpu::CpuBackend;
 use twinlight::directions::DirectionSet;
 use twinlight::methods::slhb::LookupSettings;
-use twinlight::scene::{Limits, compile};
+use twinlight::scene::{CompiledScene, Limits, compile};
 use twinlight::{Backend, io};
 
 /// Lookups and rays that are timed.
@@ -28,11 +31,18 @@ struct Arguments {
     size: u32,
     rounds: usize,
     path: u32,
+    part: Option<String>,
+}
+
+impl Arguments {
+    fn wants(&self, part: &str) -> bool {
+        self.part.as_deref().is_none_or(|wanted| wanted == part)
+    }
 }
 
 fn arguments() -> Result<Arguments, Box<dyn std::error::Error>> {
-    let mut parsed =
-        Arguments { scenes: Vec::new(), directions: "320".parse()?, size: 128, rounds: 5, path: 0 };
+    let (scenes, directions) = (Vec::new(), "320".parse()?);
+    let mut parsed = Arguments { scenes, directions, size: 128, rounds: 5, path: 0, part: None };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or_else(|| format!("{word} needs a value"));
@@ -41,6 +51,7 @@ fn arguments() -> Result<Arguments, Box<dyn std::error::Error>> {
             "--size" => parsed.size = value()?.parse()?,
             "--rounds" => parsed.rounds = value()?.parse::<usize>()?.max(1),
             "--path" => parsed.path = value()?.parse()?,
+            "--part" => parsed.part = Some(value()?),
             "--bench" => {}
             _ => parsed.scenes.push(word),
         }
@@ -61,16 +72,28 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments = arguments()?;
     let backend = CpuBackend::new();
     for name in &arguments.scenes {
-        let scene = compile(&io::load(name, &io::LoadOptions::default())?, &Limits::default())?;
+        let read = io::load(name, &io::LoadOptions::default())?;
+        let scene = compile(&read, &Limits::default())?;
         println!("{name}: {} triangles, {} threads", scene.triangles.len(), backend.threads());
-        build::time(&backend, &scene, &arguments)?;
-        let settings = LookupSettings {
-            directions: arguments.directions.clone(),
-            size: arguments.size,
-            ..LookupSettings::default()
-        };
-        let resident = backend.upload_scene(&scene)?;
-        queries::time(&backend, &scene, &resident, &settings, arguments.rounds)?;
+        if arguments.wants("builds") {
+            build::time(&backend, &scene, &arguments)?;
+        }
+        if arguments.wants("lookups") {
+            lookups(&backend, &scene, &arguments)?;
+        }
+        if arguments.wants("updates") {
+            update::time(&backend, &read, &arguments)?;
+        }
     }
     Ok(())
+}
+
+fn lookups(backend: &CpuBackend, scene: &CompiledScene, arguments: &Arguments) -> twinlight::Result<()> {
+    let settings = LookupSettings {
+        directions: arguments.directions.clone(),
+        size: arguments.size,
+        ..LookupSettings::default()
+    };
+    let resident = backend.upload_scene(scene)?;
+    queries::time(backend, scene, &resident, &settings, arguments.rounds)
 }

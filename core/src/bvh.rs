@@ -9,6 +9,10 @@ use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 use std::time::Duration;
 
+mod parts;
+
+pub use parts::build_parts;
+
 /// Triangles per leaf at most.
 pub const MAX_LEAF_TRIANGLES: u32 = 4;
 
@@ -51,6 +55,11 @@ impl Boundable for PaddedTriangle<'_> {
 /// Builds the hierarchy over `triangles` (three finite corners each) and returns it with the leaf order: element s
 /// is the index of the triangle in slot s.
 pub fn build(triangles: &[[[f32; 3]; 3]]) -> (Bvh, Vec<u32>) {
+    build_within(triangles, MAX_DEPTH)
+}
+
+/// [`build`], at most `max_depth` deep, which is more than a balanced hierarchy of as many triangles has.
+fn build_within(triangles: &[[[f32; 3]; 3]], max_depth: u32) -> (Bvh, Vec<u32>) {
     if triangles.is_empty() {
         return (Bvh::default(), Vec::new());
     }
@@ -61,7 +70,7 @@ pub fn build(triangles: &[[[f32; 3]; 3]]) -> (Bvh, Vec<u32>) {
     let params = BvhBuildParams { max_prims_per_leaf: MAX_LEAF_TRIANGLES, ..BvhBuildParams::fast_build() };
     let source = build_bvh2(&boundables, params, &mut Duration::default());
     let built = depth_first(&source);
-    if built.0.depth <= MAX_DEPTH { built } else { median_split(triangles) }
+    if built.0.depth <= max_depth { built } else { median_split(triangles) }
 }
 
 /// Triangles that may share one cell of the builder's Morton grid.
@@ -114,7 +123,7 @@ fn depth_first(source: &Bvh2) -> (Bvh, Vec<u32>) {
     (bvh, order)
 }
 
-/// A balanced hierarchy for inputs on which obvhs builds one deeper than [`MAX_DEPTH`] (many coinciding boxes).
+/// A balanced hierarchy for inputs on which obvhs builds one that is too deep (many coinciding boxes).
 fn median_split(triangles: &[[[f32; 3]; 3]]) -> (Bvh, Vec<u32>) {
     let boxes: Vec<Aabb> = triangles.iter().map(|t| PaddedTriangle(t).aabb()).collect();
     let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
@@ -147,7 +156,7 @@ fn median_split(triangles: &[[[f32; 3]; 3]]) -> (Bvh, Vec<u32>) {
 mod tests {
     use super::*;
 
-    fn check(bvh: &Bvh, order: &[u32], triangles: &[[[f32; 3]; 3]]) {
+    pub(super) fn check(bvh: &Bvh, order: &[u32], triangles: &[[[f32; 3]; 3]]) {
         let mut seen = order.to_vec();
         seen.sort_unstable();
         assert!(seen.iter().copied().eq(0..triangles.len() as u32), "every triangle in one slot");
@@ -169,7 +178,7 @@ mod tests {
         }
     }
 
-    fn soup(n: usize) -> Vec<[[f32; 3]; 3]> {
+    pub(super) fn soup(n: usize) -> Vec<[[f32; 3]; 3]> {
         let at = |i: usize, k: usize| ((i * 7919 + k * 104_729) % 1000) as f32 * 0.01;
         (0..n)
             .map(|i| {

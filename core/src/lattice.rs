@@ -20,7 +20,7 @@ pub use view::{DEPTH_ORIGIN, MAX_SIZE, View, subpixel_bits};
 pub(crate) use view::check_size;
 
 use crate::error::{Error, Result};
-use crate::scene::CompiledScene;
+use crate::scene::{CompiledScene, Triangle};
 use glam::DVec3;
 
 /// Largest length of a snapped position. The 8 steps to 2¹⁵ are what the rounding of a view's rows may add to a screen
@@ -29,6 +29,10 @@ pub const REACH: i32 = 32_760;
 
 /// Steps from the centre to the farthest point: [`REACH`] less what snapping may add to a length, √3/2.
 const RADIUS_STEPS: f64 = 32_759.0;
+
+fn corners(triangle: &Triangle) -> [DVec3; 3] {
+    [triangle.p0, triangle.p1, triangle.p2].map(|p| glam::Vec3::from(p).as_dvec3())
+}
 
 /// A cubic lattice around a ball: what integer coordinates mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,13 +73,33 @@ impl Lattice {
         Self::new(centre, radius)
     }
 
-    /// The lattice of a scene's triangles, relative to [`CompiledScene::origin`] as they are.
+    /// The lattice of triangles of a scene, relative to [`CompiledScene::origin`] as they are.
+    ///
+    /// # Errors
+    /// As [`Lattice::around`].
+    pub fn of_triangles(triangles: &[Triangle]) -> Result<Self> {
+        Self::around(triangles.iter().flat_map(corners))
+    }
+
+    /// The lattice of a scene: of what stays from frame to frame ([`CompiledScene::moving_from`]) while all that moves is within
+    /// its reach, else of everything. It depends on this frame alone.
     ///
     /// # Errors
     /// As [`Lattice::around`].
     pub fn of_scene(scene: &CompiledScene) -> Result<Self> {
-        let corners = scene.triangles.iter().flat_map(|t| [t.p0, t.p1, t.p2]);
-        Self::around(corners.map(|p| glam::Vec3::from(p).as_dvec3()))
+        let (staying, moving) = scene.parts();
+        if !staying.is_empty() {
+            let lattice = Self::of_triangles(staying)?;
+            if lattice.reaches(moving) {
+                return Ok(lattice);
+            }
+        }
+        Self::of_triangles(&scene.triangles)
+    }
+
+    /// Whether every corner can be snapped.
+    pub fn reaches(&self, triangles: &[Triangle]) -> bool {
+        triangles.iter().flat_map(corners).all(|corner| self.snap(corner).is_some())
     }
 
     /// The point with coordinates 0 0 0.

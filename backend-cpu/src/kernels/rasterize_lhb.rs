@@ -9,7 +9,7 @@
 //!
 //! *Cost.* Most triangles of a fine mesh hold no centre: 12 bytes of indices and three cached words are read for each.
 
-use crate::buffer::{out_of_memory, try_zeroed};
+use crate::buffer::try_zeroed;
 use crate::mesh::CpuMesh;
 use crate::simd::{Isa, Kernel, Width, dispatch};
 use crate::{CpuBackend, CpuBuffer};
@@ -119,9 +119,7 @@ fn gather(views: &[ViewLists], view_count: usize, params: &RasterizeLhbParams) -
     let count = check_elements(total)? as usize;
     let mut offsets = try_zeroed::<u32>(view_count * pixels + 1)?;
     let mut left_out = try_zeroed::<u32>(if params.layer_cap > 0 { view_count * pixels } else { 0 })?;
-    let mut elements = Vec::new();
-    elements.try_reserve_exact(count).map_err(|_| out_of_memory::<LhbElement>(count))?;
-    elements.resize(count, LhbElement { surface: 0, depth: 0 });
+    let mut elements = try_zeroed::<LhbElement>(count)?;
     // [5] gather
     let mut parts = Vec::with_capacity(views.len());
     let mut rest = elements.as_mut_slice();

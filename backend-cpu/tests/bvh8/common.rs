@@ -55,6 +55,20 @@ pub fn scene_of_triangles(corners: &[[Vec3; 3]]) -> CompiledScene {
     scene_of(positions, triangles)
 }
 
+/// The same with every third triangle in an instance that moves.
+pub fn scene_of_two_parts(corners: &[[Vec3; 3]]) -> CompiledScene {
+    let mut scene = Scene::default();
+    scene.add_material(Material::default());
+    for moves in [true, false] {
+        let part = corners.iter().enumerate().filter(|(i, _)| (i % 3 == 2) == moves);
+        let positions: Vec<[f32; 3]> = part.flat_map(|(_, t)| t.map(|p| p.to_array())).collect();
+        let triangles = (0..positions.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        scene.add_mesh(Mesh::new("part", positions, triangles, 0));
+    }
+    scene.instances[0].moves = true;
+    compile(&scene, &Limits::default()).expect("the mesh is valid")
+}
+
 /// A closed sphere-like mesh: an icosahedron, subdivided, with every vertex moved to `radius(direction)`.
 pub fn closed_mesh(subdivisions: u32, radius: impl Fn(Vec3) -> f32) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     let phi = 1.618_034;

@@ -1,6 +1,8 @@
 //! The wide hierarchy finds, at every vector width, the bits that testing every triangle finds.
 
-use crate::common::{Random, assert_hits_are_least, bumps, closed_mesh, scene_of, scene_of_triangles};
+use crate::common::{
+    Random, assert_hits_are_least, bumps, closed_mesh, scene_of, scene_of_triangles, scene_of_two_parts,
+};
 use glam::Vec3;
 use twinlight_backend_cpu::bvh8::WideBvh;
 use twinlight_core::bvh::Bvh;
@@ -55,6 +57,16 @@ fn soups_of_every_small_number() {
         let scene = scene_of_triangles(&soup(count, 0.6, count as u64));
         let rays = random_rays(2000, 1.5, 7 + count as u64);
         let hits = assert_hits_are_least("soup", &scene, &rays);
+        assert!(hits > 2 && hits < 2000, "{hits} hits among {count} triangles");
+    }
+}
+
+#[test]
+fn soups_of_which_a_part_moves() {
+    for count in [2, 3, 4, 9, 30, 300] {
+        let scene = scene_of_two_parts(&soup(count, 0.6, count as u64));
+        assert_eq!(scene.parts().1.len(), count / 3);
+        let hits = assert_hits_are_least("parts", &scene, &random_rays(2000, 1.5, 7 + count as u64));
         assert!(hits > 2 && hits < 2000, "{hits} hits among {count} triangles");
     }
 }

@@ -9,6 +9,9 @@ use crate::exit::{Failure, Stage};
 use crate::interrupt::Interrupt;
 use crate::source::Prepared;
 use std::time::{Duration, Instant};
+use twinlight::cpu::CpuBackend;
+#[cfg(feature = "gpu")]
+use twinlight::gpu::GpuBackend;
 use twinlight::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight::methods::slhb;
 use twinlight::{Backend, BackendInfo, Error};
@@ -21,6 +24,8 @@ pub struct Built {
     pub views: usize,
     /// Of all lists.
     pub elements: usize,
+    /// Of those, the ones kept from a frame before.
+    pub kept: usize,
     /// On the device.
     pub bytes: u64,
 }
@@ -41,6 +46,14 @@ pub struct Done {
     pub gbuffer_time: Duration,
 }
 
+/// Hit buffers of what stays from frame to frame, for whichever backend renders.
+#[derive(Default)]
+pub struct Kept {
+    cpu: slhb::Kept<CpuBackend>,
+    #[cfg(feature = "gpu")]
+    gpu: slhb::Kept<GpuBackend>,
+}
+
 /// Renders on `device`; if that was our own choice and it can't hold the scene, on the CPU.
 ///
 /// # Errors
@@ -51,17 +64,18 @@ pub fn render(
     prepared: &Prepared,
     job: &Job,
     interrupt: &Interrupt,
+    kept: &mut Kept,
     display: &mut Display,
     tell: &mut impl FnMut(String),
 ) -> Result<Done, Failure> {
     let mut session = Session { args, prepared, job, interrupt, display };
     let done = match device {
-        Device::Cpu(backend) => session.run(backend, tell),
+        Device::Cpu(backend) => session.run(backend, &mut kept.cpu, tell),
         #[cfg(feature = "gpu")]
-        Device::Gpu(backend) => match session.run(&**backend, tell) {
+        Device::Gpu(backend) => match session.run(&**backend, &mut kept.gpu, tell) {
             Err(error) if args.backend == crate::args::BackendChoice::Auto && fits_elsewhere(&error) => {
                 tell(format!("{} can't render this, the CPU does: {error}", backend.info().device));
-                session.run(&crate::device::cpu(args.threads)?, tell)
+                session.run(&crate::device::cpu(args.threads)?, &mut kept.cpu, tell)
             }
             other => other,
         },
@@ -84,7 +98,12 @@ struct Session<'a> {
 }
 
 impl Session<'_> {
-    fn run<B: Backend>(&mut self, backend: &B, tell: &mut impl FnMut(String)) -> twinlight::Result<Done> {
+    fn run<B: Backend>(
+        &mut self,
+        backend: &B,
+        kept: &mut slhb::Kept<B>,
+        tell: &mut impl FnMut(String),
+    ) -> twinlight::Result<Done> {
         let compiled = &self.prepared.compiled;
         let start = Instant::now();
         let resident = backend.upload_scene(compiled)?;
@@ -92,12 +111,17 @@ impl Session<'_> {
 
         let buffers = match self.job.method {
             MethodName::Reference => None,
-            MethodName::Slhb => Some(slhb::build(backend, compiled, &self.job.lookups)?),
+            // Keeping takes memory, and a single picture has no use for it.
+            MethodName::Slhb if self.args.frames.is_none() => {
+                Some(slhb::build(backend, compiled, &self.job.lookups)?)
+            }
+            MethodName::Slhb => Some(kept.build(backend, compiled, &self.job.lookups)?),
         };
         let lookups = buffers.as_ref().map(|buffers| Built {
             time: buffers.build_time,
             views: buffers.views.len(),
             elements: buffers.elements(backend),
+            kept: buffers.kept_elements,
             bytes: buffers.bytes(backend),
         });
 

@@ -107,6 +107,7 @@ pub fn json(
             "stop": done.taken.stop.name(),
             "lhb_views": done.lookups.as_ref().map(|built| built.views),
             "lhb_elements": done.lookups.as_ref().map(|built| built.elements),
+            "lhb_elements_kept": done.lookups.as_ref().map(|built| built.kept),
             "samples": { "least": least, "most": most },
             "paths_per_second": done.taken.paths_per_second(),
         },

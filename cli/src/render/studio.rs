@@ -5,7 +5,7 @@ use super::layers::Pictures;
 use super::moment::Moment;
 use super::output::Outputs;
 use super::progress;
-use super::run::{self, Done};
+use super::run::{self, Done, Kept};
 use super::sidecar;
 use crate::args::{ModeName, RenderArgs};
 use crate::device::{self, Device};
@@ -22,6 +22,7 @@ pub struct Studio<'a> {
     args: &'a RenderArgs,
     tone: Display,
     device: Device,
+    kept: Kept,
     /// Asks for a stop.
     pub interrupt: Interrupt,
     /// Every notice so far, without its numbers: what is said of one frame need not be said of the next.
@@ -43,7 +44,7 @@ impl<'a> Studio<'a> {
                 "--mode portable is for GPUs: the CPU, which renders this, always computes as in strict mode";
             about_device.push(notice.into());
         }
-        Ok(Self { args, tone, device, interrupt, said: BTreeSet::new(), about_device })
+        Ok(Self { args, tone, device, kept: Kept::default(), interrupt, said: BTreeSet::new(), about_device })
     }
 
     /// Renders a picture; also gives the notices that are about it.
@@ -65,7 +66,8 @@ impl<'a> Studio<'a> {
             notices.push(text);
         };
         prepared.notices.iter().chain(&self.about_device).cloned().for_each(&mut tell);
-        let done = run::render(&self.device, self.args, prepared, job, &self.interrupt, display, &mut tell)?;
+        let (device, kept, interrupt) = (&self.device, &mut self.kept, &self.interrupt);
+        let done = run::render(device, self.args, prepared, job, interrupt, kept, display, &mut tell)?;
         Ok((done, notices))
     }
 

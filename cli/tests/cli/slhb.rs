@@ -12,7 +12,8 @@ fn slhb_renders_and_says_what_it_built() {
     let sidecar: serde_json::Value = serde_json::from_slice(&folder.read("cornell.json")).unwrap();
     assert_eq!(sidecar["settings"]["method"], "slhb");
     let knobs = serde_json::json!({
-        "directions": "icosahedron:20", "size": 16, "layers": null, "cone": false, "trace_misses": true
+        "directions": "icosahedron:20", "size": 16, "layers": null, "cone": false, "gather": false,
+        "trace_misses": true
     });
     assert_eq!(sidecar["settings"]["slhb"], knobs);
     assert_eq!(sidecar["result"]["lhb_views"], 10);
@@ -56,4 +57,80 @@ fn show_draws_a_hit_buffer() {
     }
     let two = ["render", "builtin:cornell", "--show", "lhb:0", "-o", "a.png", "-o", "b.png"];
     assert!(folder.run(&two).stderr.contains("--show draws one picture"));
+}
+
+/// A room that stays, in which a file's skin bends.
+fn moving_room() -> Folder {
+    let folder = Folder::new();
+    let all = twinlight::fixtures::files::all();
+    let bytes = &all.iter().find(|(path, _)| *path == "bending/bending.glb").expect("the fixture").1;
+    std::fs::write(folder.path("b.glb"), bytes).expect("a file of the test");
+    folder.write(
+        "room.toml",
+        "[[mesh]]\nname = 'b'\npath = 'b.glb'\n[[mesh]]\nname = 'room'\npath = 'builtin:cornell'\n[[instance]]\nmesh = 'b'\n\
+         translate = [180, 340, 280]\nscale = 60\n[[instance]]\nmesh = 'room'\n",
+    );
+    folder
+}
+
+/// What is kept from frame to frame doesn't show: any frame is the picture of its moment.
+fn frames_are_pictures_of_their_moments(backend: &str, small: &[&str]) {
+    let folder = moving_room();
+    let render = [
+        "render",
+        "room.toml",
+        "--method",
+        "slhb",
+        "--lhb-size",
+        "48",
+        "--bounces",
+        "3",
+        "--backend",
+        backend,
+    ];
+    let run = |more: &[&str]| folder.run(&[&render[..], small, more].concat()).ok();
+    run(&["--frames", "0..3", "--fps", "2", "-o", "a.exr"]);
+    run(&["--frames", "2..3", "--fps", "2", "-o", "b.exr"]);
+    run(&["--at", "0.5", "-o", "c.exr"]);
+    assert!(folder.read("a-0002.exr") == folder.read("b-0002.exr"));
+    assert!(folder.read("a-0001.exr") == folder.read("c.exr"));
+    assert!(folder.read("a-0001.exr") != folder.read("a-0002.exr"));
+    let result = |name: &str| {
+        let sidecar: serde_json::Value = serde_json::from_slice(&folder.read(name)).unwrap();
+        let count = |key: &str| sidecar["result"][key].as_u64().unwrap();
+        (count("lhb_elements_kept"), count("lhb_elements"))
+    };
+    let (kept, whole) = result("a-0002.json");
+    assert!(kept > 1000 && kept < whole, "{kept} of {whole}");
+    for first in ["a-0000.json", "b-0002.json", "c.json"] {
+        assert_eq!(result(first).0, 0, "{first}");
+    }
+}
+
+#[test]
+fn frames_on_the_cpu_are_pictures_of_their_moments() {
+    frames_are_pictures_of_their_moments("cpu", &["--size", "16x16", "--spp", "2", "--directions", "80"]);
+}
+
+/// On whichever adapter comes first, where adapters are demanded.
+#[cfg(feature = "gpu")]
+#[test]
+fn frames_on_a_gpu_are_pictures_of_their_moments() {
+    if std::env::var("TWINLIGHT_REQUIRE_GPU").is_ok_and(|value| value == "1") {
+        frames_are_pictures_of_their_moments("gpu", &["--size", "8x8", "--spp", "1", "--directions", "20"]);
+    }
+}
+
+/// With all directions in turn, samples come in multiples of their number.
+#[test]
+fn gathering_shares_samples_among_directions() {
+    let folder = Folder::new();
+    let room = ["render", "builtin:cornell", "--method", "slhb", "--size", "8x8", "--backend", "cpu"];
+    let knobs = ["--directions", "20", "--lhb-size", "16", "--gather", "all"];
+    let room = [&room[..], &knobs].concat();
+    folder.run(&room).ok();
+    let sidecar: serde_json::Value = serde_json::from_slice(&folder.read("cornell.json")).unwrap();
+    assert_eq!(sidecar["settings"]["spp"], 80);
+    let failed = folder.run(&[&room[..], &["--spp", "50"]].concat());
+    assert!(failed.stderr.contains("--spp 50") && failed.stderr.contains("ask for 60"), "{}", failed.stderr);
 }

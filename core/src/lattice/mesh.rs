@@ -1,10 +1,10 @@
 //! Meshes on the lattice.
 
-use super::{Lattice, LatticePlane, REACH};
+use super::{Lattice, LatticePlane, REACH, corners};
 use crate::error::{Error, Result};
 use crate::kernels::rasterize_lhb::MAX_TRIANGLES;
-use crate::scene::CompiledScene;
-use glam::{DVec3, Vec3};
+use crate::scene::{CompiledScene, Triangle};
+use glam::DVec3;
 use std::collections::HashMap;
 
 /// A validated triangle mesh on a [`Lattice`]: every index names a vertex, and every vertex is in reach.
@@ -71,8 +71,15 @@ impl LatticeMesh {
     /// # Errors
     /// As [`LatticeMesh::snap`].
     pub fn of_scene(lattice: &Lattice, scene: &CompiledScene) -> Result<Self> {
-        let corners = |t: &crate::scene::Triangle| [t.p0, t.p1, t.p2].map(|p| Vec3::from(p).as_dvec3());
-        Self::snap(lattice, scene.triangles.iter().map(corners))
+        Self::of_triangles(lattice, &scene.triangles)
+    }
+
+    /// Snaps triangles of a scene, in their order.
+    ///
+    /// # Errors
+    /// As [`LatticeMesh::snap`].
+    pub fn of_triangles(lattice: &Lattice, triangles: &[Triangle]) -> Result<Self> {
+        Self::snap(lattice, triangles.iter().map(corners))
     }
 
     /// Positions, lattice units from the centre.

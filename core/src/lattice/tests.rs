@@ -1,4 +1,5 @@
 use super::*;
+use crate::scene::{Limits, Material, Mesh, Scene, compile};
 use proptest::prelude::*;
 
 fn direction() -> impl Strategy<Value = DVec3> {
@@ -123,4 +124,35 @@ fn bad_views_are_refused() {
     let mut view = View::along(DVec3::X, 8).unwrap();
     view.down[0] = i32::MIN;
     assert!(view.check(8).unwrap_err().to_string().starts_with("view.down: ["));
+}
+
+/// A floor of two units around the origin, and a triangle at a height that moves.
+fn floor_and(height: f32) -> CompiledScene {
+    let mut scene = Scene::default();
+    let material = scene.add_material(Material::default());
+    let floor = vec![[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]];
+    let bird = vec![[0.0, height, 0.0], [0.1, height, 0.0], [0.0, height, 0.1]];
+    scene.add_mesh(Mesh::new("bird", bird, vec![[0, 1, 2]], material));
+    scene.add_mesh(Mesh::new("floor", floor, vec![[0, 2, 1], [0, 3, 2]], material));
+    scene.instances[0].moves = true;
+    compile(&scene, &Limits::default()).unwrap()
+}
+
+/// The lattice is that of what stays for as long as it reaches everything, and then that of everything.
+#[test]
+fn what_moves_is_on_the_lattice_of_what_stays() {
+    let floor = Lattice::new(DVec3::ZERO, 2.0_f64.sqrt()).unwrap();
+    for (height, near) in [(0.5, true), (-1.0, true), (1.4, true), (1.42, false), (30.0, false)] {
+        let scene = floor_and(height);
+        let lattice = Lattice::of_scene(&scene).unwrap();
+        assert_eq!(lattice == floor, near, "{height}: {lattice:?}");
+        let all = Lattice::of_triangles(&scene.triangles).unwrap();
+        assert_eq!(lattice == all, !near, "{height}: {lattice:?}");
+        let (staying, moving) = scene.parts();
+        assert_eq!((staying.len(), moving.len(), moving[0].id), (2, 1, 0));
+        let whole = LatticeMesh::of_scene(&lattice, &scene).unwrap();
+        let [behind, first] =
+            [moving, staying].map(|part| LatticeMesh::of_triangles(&lattice, part).unwrap());
+        assert!(first.followed_by(&behind).unwrap().planes().eq(whole.planes()));
+    }
 }

@@ -18,7 +18,9 @@ mod lights;
 /// be subnormal.
 const SMALLEST: f32 = 1e-30;
 
-/// Validates `scene`, moves it to world space around its middle, builds its hierarchy and lists its lights.
+/// Validates `scene`, moves it to world space around its middle, builds its hierarchy and lists its lights. What may move
+/// ([`Instance::moves`]) comes behind what stays, with a hierarchy of its own, so that what stays is compiled to the same bits in every
+/// frame.
 ///
 /// # Errors
 /// Those of [`Scene::validate`]; [`Error::InvalidInput`] for vertices that are not finite or beyond
@@ -27,10 +29,11 @@ const SMALLEST: f32 = 1e-30;
 pub fn compile(scene: &Scene, limits: &Limits) -> Result<CompiledScene> {
     scene.validate(limits)?;
     check_memory(scene, limits)?;
-    let origin = middle(scene);
+    let moving = scene.moving();
+    let origin = middle(scene, &moving);
     let mut flat = Flat { origin, lenient: limits.lenient, ..Flat::default() };
-    for instance in &scene.instances {
-        flat.add(scene, instance)?;
+    for (instance, &moves) in scene.instances.iter().zip(&moving) {
+        flat.add(scene, instance, moves)?;
     }
     let mut materials: Vec<MaterialRecord> = Vec::with_capacity(scene.materials.len() + 1);
     let (mut words, texture_offsets) = texture_words(&scene.textures);
@@ -47,7 +50,8 @@ pub fn compile(scene: &Scene, limits: &Limits) -> Result<CompiledScene> {
     check_size(&flat.corners)?;
     flat.coincident = coincident::leave_out(&mut flat, &mut materials);
 
-    let (bvh, order) = bvh::build(&flat.corners);
+    let moving_from = flat.moves.iter().filter(|moves| !*moves).count() as u32;
+    let (bvh, order) = bvh::build_parts(&flat.corners, &flat.moves);
     let pick = |s: &u32| *s as usize;
     let mut triangles: Vec<Triangle> = order.iter().map(|s| flat.triangle(pick(s))).collect();
     let attributes = order.iter().map(|s| flat.attributes[pick(s)]).collect();
@@ -60,6 +64,7 @@ pub fn compile(scene: &Scene, limits: &Limits) -> Result<CompiledScene> {
     notices.append(&mut listed.notices);
     Ok(CompiledScene {
         triangles,
+        moving_from,
         attributes,
         materials,
         environment,
@@ -101,14 +106,17 @@ fn check_memory(scene: &Scene, limits: &Limits) -> Result<()> {
 }
 
 /// The point that becomes the origin: the middle of the bounds, on a grid coarser than the scene, so that scenes
-/// around the origin stay put and exact shifts by the grid step give identical records.
-fn middle(scene: &Scene) -> DVec3 {
-    let Some((lo, hi)) = scene.bounds() else { return DVec3::ZERO };
-    let extent = (hi - lo).max_element();
-    if !(extent.is_finite() && lo.is_finite() && hi.is_finite()) || extent == 0.0 {
-        return DVec3::ZERO;
-    }
-    let step = (2.0 * extent).log2().ceil().exp2();
+/// around the origin stay put and exact shifts by the grid step give identical records. The bounds are those of what stays, if it
+/// has any, so that its records have the same bits in every frame.
+fn middle(scene: &Scene, moving: &[bool]) -> DVec3 {
+    let extent = |(lo, hi): (DVec3, DVec3)| (hi - lo).max_element();
+    let usable = |bounds: &(DVec3, DVec3)| {
+        let extent = extent(*bounds);
+        extent.is_finite() && bounds.0.is_finite() && bounds.1.is_finite() && extent != 0.0
+    };
+    let stays = scene.bounds_of(|instance| !moving[instance]).filter(usable);
+    let Some((lo, hi)) = stays.or_else(|| scene.bounds().filter(usable)) else { return DVec3::ZERO };
+    let step = (2.0 * extent((lo, hi))).log2().ceil().exp2();
     ((lo + hi) * 0.5 / step).round() * step
 }
 
@@ -120,6 +128,8 @@ struct Flat {
     attributes: Vec<TriangleAttributes>,
     materials: Vec<u32>,
     ids: Vec<u32>,
+    /// Whether each may move.
+    moves: Vec<bool>,
     next_id: u32,
     dropped: usize,
     unusable_normals: usize,
@@ -132,7 +142,7 @@ fn narrow(v: DVec3) -> [f32; 3] {
 }
 
 impl Flat {
-    fn add(&mut self, scene: &Scene, instance: &Instance) -> Result<()> {
+    fn add(&mut self, scene: &Scene, instance: &Instance, moves: bool) -> Result<()> {
         let mesh = &scene.meshes[instance.mesh as usize];
         let transform = &instance.transform;
         let mirrored = transform.determinant() < 0.0;
@@ -159,6 +169,7 @@ impl Flat {
             self.attributes.push(attributes);
             self.materials.push(instance.material.unwrap_or(mesh.material_ids[i]));
             self.ids.push(id);
+            self.moves.push(moves);
         }
         Ok(())
     }
@@ -212,6 +223,7 @@ impl Flat {
             self.attributes.push(TriangleAttributes::zeroed());
             self.materials.push(material);
             self.ids.push(self.next_id);
+            self.moves.push(false);
             self.next_id += 1;
         }
     }
@@ -225,6 +237,7 @@ impl Flat {
         retain(&mut self.attributes, keep);
         retain(&mut self.materials, keep);
         retain(&mut self.ids, keep);
+        retain(&mut self.moves, keep);
     }
 
     fn triangle(&self, i: usize) -> Triangle {

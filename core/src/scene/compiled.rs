@@ -155,8 +155,10 @@ pub struct EnvironmentHeader {
 /// A validated scene in world space, ready for any backend.
 #[derive(Debug, Clone)]
 pub struct CompiledScene {
-    /// In leaf order of `bvh`.
+    /// In leaf order of `bvh`; first those that stay from frame to frame.
     pub triangles: Vec<Triangle>,
+    /// Slot of the first triangle that may move ([`super::Instance::moves`]): the number of triangles where nothing does.
+    pub moving_from: u32,
     /// In leaf order of `bvh`.
     pub attributes: Vec<TriangleAttributes>,
     /// Material records; at least one.
@@ -179,4 +181,11 @@ pub struct CompiledScene {
     pub moment_exponent: i32,
     /// What was dropped or mended while compiling.
     pub notices: Vec<String>,
+}
+
+impl CompiledScene {
+    /// The triangles that stay from frame to frame, and those that may move.
+    pub fn parts(&self) -> (&[Triangle], &[Triangle]) {
+        self.triangles.split_at(self.moving_from as usize)
+    }
 }

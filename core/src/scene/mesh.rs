@@ -98,11 +98,14 @@ pub struct Instance {
     pub transform: Transform,
     /// Replaces the mesh's materials when set.
     pub material: Option<u32>,
+    /// Whether another frame may have it elsewhere, or of another shape: it is compiled behind what stays. [`super::Scene::at`]
+    /// sets it for what follows a motion.
+    pub moves: bool,
 }
 
 impl Instance {
     /// An untransformed placement.
     pub fn new(name: impl Into<String>, mesh: u32) -> Self {
-        Self { name: name.into(), mesh, transform: Transform::IDENTITY, material: None }
+        Self { name: name.into(), mesh, transform: Transform::IDENTITY, material: None, moves: false }
     }
 }

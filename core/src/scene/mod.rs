@@ -61,8 +61,13 @@ impl Scene {
 
     /// World bounds (min, max) over all instances, or `None` without a vertex.
     pub fn bounds(&self) -> Option<(glam::DVec3, glam::DVec3)> {
+        self.bounds_of(|_| true)
+    }
+
+    /// [`Scene::bounds`] over the instances whose numbers `counts` says.
+    fn bounds_of(&self, counts: impl Fn(usize) -> bool) -> Option<(glam::DVec3, glam::DVec3)> {
         let mut bounds: Option<(glam::DVec3, glam::DVec3)> = None;
-        for instance in &self.instances {
+        for (_, instance) in self.instances.iter().enumerate().filter(|(i, _)| counts(*i)) {
             let Some(mesh) = self.meshes.get(instance.mesh as usize) else { continue };
             for &p in &mesh.positions {
                 let p = instance.transform.point(p);

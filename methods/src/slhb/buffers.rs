@@ -1,10 +1,11 @@
 //! The buffers of a scene, and what lookups need beside them.
 
+use super::plan::Plan;
 use std::time::{Duration, Instant};
-use twinlight_core::directions::{DirectionSet, NearestMap};
-use twinlight_core::kernels::rasterize_lhb::{CAP_NEAR, Lhb, PATH_AUTO, RasterizeLhbParams};
-use twinlight_core::kernels::walk_lhb::{CONE, GATHER, TRACE_MISSES, WalkLhbBlock};
-use twinlight_core::lattice::{Lattice, LatticeMesh, View, subpixel_bits};
+use twinlight_core::directions::DirectionSet;
+use twinlight_core::kernels::rasterize_lhb::Lhb;
+use twinlight_core::kernels::walk_lhb::WalkLhbBlock;
+use twinlight_core::lattice::{Lattice, LatticeMesh, View};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, Result};
 
@@ -46,8 +47,10 @@ pub struct Buffers<B: Backend> {
     pub map: B::Buffer<u32>,
     /// For the kernel.
     pub lookup: WalkLhbBlock,
-    /// Time to rasterize.
+    /// Time to rasterize, and to merge what was kept with what moves.
     pub build_time: Duration,
+    /// Elements of what was kept from a frame before; 0 where everything was rasterized.
+    pub kept_elements: usize,
 }
 
 impl<B: Backend> Buffers<B> {
@@ -73,50 +76,15 @@ pub fn build<B: Backend>(
     scene: &CompiledScene,
     settings: &LookupSettings,
 ) -> Result<Buffers<B>> {
+    build_by(&Plan::new(settings)?, backend, scene)
+}
+
+/// [`build`], with what follows from the settings.
+pub(super) fn build_by<B: Backend>(plan: &Plan, backend: &B, scene: &CompiledScene) -> Result<Buffers<B>> {
     let lattice = Lattice::of_scene(scene)?;
-    let mesh = backend.upload_mesh(&LatticeMesh::of_scene(&lattice, scene)?)?;
-    let size = settings.size;
-    let lines = settings.directions.lines().iter();
-    let views = lines.map(|&line| View::along(line, size)).collect::<Result<Vec<_>>>()?;
-    let params = RasterizeLhbParams {
-        size,
-        path: PATH_AUTO,
-        layer_cap: settings.layers.unwrap_or(0),
-        cap_side: CAP_NEAR,
-    };
+    let mesh = LatticeMesh::of_scene(&lattice, scene)?;
+    let resident = backend.upload_mesh(&mesh)?;
     let start = Instant::now();
-    let lhb = backend.rasterize_lhb(&mesh, &views, &params)?;
-    let build_time = start.elapsed();
-    let map = NearestMap::new(&settings.directions);
-    let mut words = map.ray_words(&settings.directions);
-    let lookup = WalkLhbBlock {
-        centre: lattice.centre().as_vec3().to_array(),
-        steps_per_unit: (1.0 / lattice.step()) as f32,
-        unit_per_step: lattice.step() as f32,
-        row_scale: size.next_power_of_two() as f32 / size as f32,
-        lift: 2.0 * sine(settings.directions.covering_radius()) as f32,
-        size,
-        subpixel_bits: subpixel_bits(size),
-        map_resolution: map.resolution(),
-        flags: flag(settings.cone, CONE)
-            | flag(settings.trace_misses, TRACE_MISSES)
-            | flag(settings.gather, GATHER),
-        interleave: 0,
-        gather_begin: words.len() as u32,
-        gather_count: settings.directions.len() as u32,
-        padding: [0; 2],
-    };
-    words.extend(NearestMap::gather_words(&settings.directions));
-    let map = backend.upload(&words)?;
-    Ok(Buffers { mesh, lhb, views, map, lookup, build_time })
-}
-
-fn flag(set: bool, bit: u32) -> u32 {
-    if set { bit } else { 0 }
-}
-
-/// sin x for 0 ≤ x ≤ π/2 by its series, to 10⁻⁷: the platform's may differ from machine to machine.
-fn sine(x: f64) -> f64 {
-    let square = x * x;
-    x * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0))))
+    let lhb = plan.rasterize(backend, &resident)?;
+    plan.buffers(backend, &lattice, resident, lhb, start.elapsed(), 0)
 }

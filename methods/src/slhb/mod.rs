@@ -1,13 +1,16 @@
 //! Spherical layered hit buffers: indirect light by looking up, not tracing, what a surface sees.
 //!
 //! [`build`] rasterizes a scene along every direction of a set and keeps all layers; [`render`] walks paths through the buffers
-//! with the kernel `walk_lhb`. Biased, in exchange for lookups that cost a fraction of a ray: the error falls with the number
-//! of directions and pixels. *Source.* Yu, spherical layered hit buffers.
+//! with the kernel `walk_lhb`. In a scene that moves, [`Kept`] rasterizes only what moves again. Biased, in exchange for lookups that
+//! cost a fraction of a ray: the error falls with the number of directions and pixels. *Source.* Yu, spherical layered hit buffers.
 
 mod buffers;
+mod kept;
+mod plan;
 mod sheet;
 
 pub use buffers::{Buffers, LookupSettings, build};
+pub use kept::Kept;
 pub use sheet::{Sheet, sheet};
 
 use crate::reference::{Control, Progress, Rendered, Settings, accumulate};

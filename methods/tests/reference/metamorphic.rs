@@ -72,6 +72,19 @@ fn g13_mirrored_instance() {
 }
 
 /// Splitting a mesh's placements into instances is the same as one mesh.
+/// Other slots, another hierarchy, the same hits and lights.
+#[test]
+fn what_may_move_looks_the_same() {
+    for name in ["axis", "materials", "veach"] {
+        let mut scene = builtin(name).unwrap();
+        let expected = film(&scene, &settings(24, 4));
+        for part in 0..2 {
+            scene.instances.iter_mut().enumerate().for_each(|(i, instance)| instance.moves = i % 2 == part);
+            assert!(film(&scene, &settings(24, 4)) == expected, "{name}, part {part}");
+        }
+    }
+}
+
 #[test]
 fn instances_are_copies() {
     let one = builtin("cornell").unwrap();

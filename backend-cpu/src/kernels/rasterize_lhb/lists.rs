@@ -7,6 +7,9 @@ use twinlight_core::kernels::rasterize_lhb::{CAP_NEAR, RasterizeLhbParams};
 /// Lists up to this long are sorted by insertion.
 const SHORT: usize = 24;
 
+/// Pixels for each fragment from which on there are few.
+const SPARSE: usize = 32;
+
 /// Working memory.
 #[derive(Debug, Default)]
 pub(super) struct Lists {
@@ -16,10 +19,37 @@ pub(super) struct Lists {
 }
 
 impl Lists {
+    /// Sorts fragments into lists.
+    #[inline(always)]
+    pub(super) fn sort(&mut self, fragments: &mut [Fragment], params: &RasterizeLhbParams) -> ViewLists {
+        let pixels = params.size as usize * params.size as usize;
+        if fragments.len() < pixels / SPARSE {
+            self.sort_few(fragments, pixels);
+        } else {
+            self.sort_by_pixel(fragments, pixels);
+        }
+        self.finish(params)
+    }
+
+    /// By comparing: what an object covers in a view should not cost a visit of every pixel.
+    fn sort_few(&mut self, fragments: &mut [Fragment], pixels: usize) {
+        fragments.sort_unstable_by_key(|fragment| (fragment.pixel, fragment.key));
+        self.keys.clear();
+        self.keys.extend(fragments.iter().map(|fragment| fragment.key));
+        self.cursors.resize(pixels, 0);
+        let mut filled = 0;
+        for (i, fragment) in fragments.iter().enumerate() {
+            // Lists before this one end where it begins.
+            let pixel = fragment.pixel as usize;
+            self.cursors[filled..pixel].fill(i as u32);
+            filled = pixel;
+        }
+        self.cursors[filled..].fill(fragments.len() as u32);
+    }
+
     /// Counts, scans, scatters and sorts.
     #[inline(always)]
-    pub(super) fn sort(&mut self, fragments: &[Fragment], params: &RasterizeLhbParams) -> ViewLists {
-        let pixels = params.size as usize * params.size as usize;
+    fn sort_by_pixel(&mut self, fragments: &[Fragment], pixels: usize) {
         self.cursors.clear();
         self.cursors.resize(pixels, 0);
         for fragment in fragments {
@@ -40,7 +70,6 @@ impl Lists {
             sort_list(&mut self.keys[begin..end as usize]);
             begin = end as usize;
         }
-        self.finish(params)
     }
 
     /// Applies the cap.

@@ -31,7 +31,8 @@ impl Binding {
 impl Scene {
     /// The scene as it stands at a time, in seconds; before the first keyframe it is as there, after the last likewise
     /// (glTF 2.0, §3.11). Instances that follow nodes get their transforms, meshes with skins their positions and normals;
-    /// all else stays, so that the same triangle has the same number at all times. The result stands still.
+    /// all else stays, so that the same triangle has the same number at all times. The result stands still, and its instances
+    /// say which of them move ([`crate::scene::Instance::moves`]).
     ///
     /// What is scaled to nothing, as animations hide objects, becomes a point and keeps its triangles:
     /// [`Transform::or_point`].
@@ -50,6 +51,9 @@ impl Scene {
             skin.bend(&world, &mut meshes[skin.mesh as usize]);
         }
         let mut instances = self.instances.clone();
+        for (instance, moves) in instances.iter_mut().zip(self.moving()) {
+            instance.moves = moves;
+        }
         for binding in &self.motion.bindings {
             instances[binding.instance as usize].transform = binding.transform(&world).or_point();
         }
@@ -66,8 +70,8 @@ impl Scene {
         })
     }
 
-    /// Whether an instance can be elsewhere, or of another shape, at another time; the others are the same in every
-    /// [`Scene::at`]. [`Scene::moving`] tells it of all at once.
+    /// Whether an instance can be elsewhere, or of another shape, at another time, by the motion or by its own word; the others
+    /// are the same in every [`Scene::at`]. [`Scene::moving`] tells it of all at once.
     pub fn moves(&self, instance: usize) -> bool {
         Moving::of(&self.motion).instance(self, instance)
     }
@@ -102,8 +106,10 @@ impl Moving {
         let bound = bindings.binary_search_by_key(&index, |binding| binding.instance as usize);
         let carried = |binding: &Binding| binding.nodes.iter().any(|&node| at(&self.nodes, node));
         let skin = |mesh: u32| skins.binary_search_by_key(&mesh, |skin| skin.mesh).ok();
-        let bent = scene.instances.get(index).and_then(|instance| skin(instance.mesh));
-        bound.is_ok_and(|binding| carried(&bindings[binding])) || bent.is_some_and(|skin| self.skins[skin])
+        let Some(instance) = scene.instances.get(index) else { return false };
+        instance.moves
+            || bound.is_ok_and(|binding| carried(&bindings[binding]))
+            || skin(instance.mesh).is_some_and(|skin| self.skins[skin])
     }
 }
 

@@ -176,6 +176,66 @@ fn normals_follow_the_inverse_transpose() {
 }
 
 #[test]
+fn posed_scenes_say_what_moves() {
+    let mut scene = still();
+    scene.instances[1].transform.translation.x = 4.0;
+    let shift = line([DVec3::ZERO, DVec3::new(0.0, 0.0, 8.0)]);
+    let nodes = vec![node(None, Local::Keyed(Box::new(Track { translation: shift, ..track() })))];
+    scene.motion = Motion { nodes, bindings: vec![binding(0, &[0])], duration: 2.0, ..Motion::default() };
+    let mut frames = [0.0, 1.0, 2.0].map(|seconds| scene.at(seconds).unwrap());
+    for posed in &frames {
+        assert_eq!((posed.moving(), posed.moves(0), posed.moves(1)), (vec![true, false], true, false));
+        // Whoever poses a scene by other means than a motion says so.
+        assert_eq!(posed.at(7.0).unwrap().moving(), [true, false]);
+    }
+    let compiled = |scene: &Scene| compile(scene, &Limits::default()).unwrap();
+    let [first, ..] = frames.each_ref().map(compiled);
+    assert_eq!((first.moving_from, first.parts().0[0].id, first.parts().1[0].id), (1, 1, 0));
+    for posed in &frames {
+        assert_eq!(compiled(posed).parts().0, first.parts().0);
+    }
+    frames[2].instances[0].moves = false;
+    assert_eq!(compiled(&frames[2]).moving_from, 2);
+}
+
+/// Far from the origin, where the scene's own middle becomes it: that of what stays, whatever else goes where.
+#[test]
+fn what_stays_is_compiled_to_the_same_bits() {
+    let mut scene = still();
+    let place = DVec3::new(1e6, 2e6, -3e6);
+    for (x, instance) in scene.instances.iter_mut().enumerate() {
+        instance.transform.translation = place + DVec3::new(x as f64 * 0.3, 0.0, 0.0);
+    }
+    scene.instances[0].moves = true;
+    let compiled = |scene: &Scene| compile(scene, &Limits::default()).unwrap();
+    let first = compiled(&scene);
+    for shift in [0.7, 40.0, -3e5] {
+        scene.instances[0].transform.translation.y = place.y + shift;
+        let frame = compiled(&scene);
+        assert_eq!((frame.parts().0, frame.origin), (first.parts().0, first.origin), "{shift}");
+    }
+}
+
+/// A lamp that moves and stands, this moment, where a wall of the room does: the wall is hidden as ever, and back the next.
+#[test]
+fn coinciding_with_what_stays_for_a_moment() {
+    let mut scene = still();
+    let lamp = scene.add_material(Material::emitter("lamp", [1.0; 3]));
+    scene.instances[0].material = Some(lamp);
+    scene.instances[0].moves = true;
+    let ids = |scene: &Scene| {
+        let compiled = compile(scene, &Limits::default()).unwrap();
+        (compiled.moving_from, compiled.triangles.iter().map(|t| t.id).collect::<Vec<_>>())
+    };
+    assert_eq!(ids(&scene), (0, vec![0]));
+    scene.instances[0].transform.translation.z = 0.5;
+    assert_eq!(ids(&scene), (1, vec![1, 0]));
+    scene.instances.swap(0, 1);
+    scene.instances[1].transform.translation.z = 0.0;
+    assert_eq!(ids(&scene), (0, vec![1]));
+}
+
+#[test]
 fn hidden_by_scale_zero_and_still_counted() {
     let mut scene = still();
     let scale = Curve::new(Interpolation::Step, vec![0.0, 1.0], vec![DVec3::ZERO, DVec3::ONE]).unwrap();
