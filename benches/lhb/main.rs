@@ -2,12 +2,13 @@
 //! traced rays, and updates beside whole builds.
 //!
 //! `cargo bench -p twinlight --bench lhb -- [SCENE…] [--directions N] [--size N] [--rounds N] [--path 0..4]
-//! [--part builds|lookups|updates]`
+//! [--part builds|lookups|updates] [--dump FILE]`
 //!
 //! Builds draw a view per direction, though opposite directions share one: that is the work that is compared. The floor is
 //! filling as many bytes of the same vector from the same threads, in turn with the builds. Lookups are cosine-weighted rays
 //! from random points of the scene's surfaces, in the order of their directions; the rays traced beside them are the same. Updates
-//! and whole builds are in turn, of the same frames, a view per line: what stays is kept, and an object is moved.
+//! and whole builds are in turn, of the same frames, a view per line: what stays is kept, and an object is moved. `--dump` writes
+//! triangles and rays for `benchmarks/embree_rays.cpp`.
 
 #[path = "../../backend-cpu/benches/trace/clock.rs"]
 mod clock;
@@ -16,6 +17,7 @@ mod queries;
 mod build;
 mod update;
 
+use std::path::PathBuf;
 use twinlight::cpu::CpuBackend;
 use twinlight::directions::DirectionSet;
 use twinlight::methods::slhb::LookupSettings;
@@ -32,6 +34,7 @@ struct Arguments {
     rounds: usize,
     path: u32,
     part: Option<String>,
+    dump: Option<PathBuf>,
 }
 
 impl Arguments {
@@ -42,7 +45,7 @@ impl Arguments {
 
 fn arguments() -> Result<Arguments, Box<dyn std::error::Error>> {
     let (scenes, directions) = (Vec::new(), "320".parse()?);
-    let mut parsed = Arguments { scenes, directions, size: 128, rounds: 5, path: 0, part: None };
+    let mut parsed = Arguments { scenes, directions, size: 128, rounds: 5, path: 0, part: None, dump: None };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or_else(|| format!("{word} needs a value"));
@@ -52,6 +55,7 @@ fn arguments() -> Result<Arguments, Box<dyn std::error::Error>> {
             "--rounds" => parsed.rounds = value()?.parse::<usize>()?.max(1),
             "--path" => parsed.path = value()?.parse()?,
             "--part" => parsed.part = Some(value()?),
+            "--dump" => parsed.dump = Some(value()?.into()),
             "--bench" => {}
             _ => parsed.scenes.push(word),
         }
@@ -95,5 +99,6 @@ fn lookups(backend: &CpuBackend, scene: &CompiledScene, arguments: &Arguments) -
         ..LookupSettings::default()
     };
     let resident = backend.upload_scene(scene)?;
-    queries::time(backend, scene, &resident, &settings, arguments.rounds)
+    let dump = arguments.dump.as_deref();
+    queries::time(backend, scene, &resident, &settings, arguments.rounds, dump)
 }

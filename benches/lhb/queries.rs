@@ -3,6 +3,9 @@
 use super::clock::processor_seconds;
 use super::{QUERIES, spread};
 use glam::Vec3;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
 use std::time::Instant;
 use twinlight::cpu::{CpuBackend, CpuScene};
 use twinlight::fixtures::random::Random;
@@ -16,7 +19,7 @@ use twinlight::scene::CompiledScene;
 use twinlight::transport::bsdf::cosine_hemisphere;
 use twinlight::transport::lhb::lhb_query;
 use twinlight::transport::light::FAR;
-use twinlight::{Backend, Result};
+use twinlight::{Backend, Error, Result};
 
 /// Times as many lookups as rays.
 pub fn time(
@@ -25,6 +28,7 @@ pub fn time(
     resident: &CpuScene,
     settings: &LookupSettings,
     rounds: usize,
+    dump: Option<&Path>,
 ) -> Result<()> {
     let buffers = build(backend, scene, settings)?;
     let map = backend.download(&buffers.map)?;
@@ -32,6 +36,10 @@ pub fn time(
         bounces(scene).map(|(o, n, d, s)| query(&buffers, &map, o, n, d, s)).collect();
     work.sort_by_key(|(query, _)| query.ray);
     let (queries, rays): (Vec<_>, Vec<_>) = work.into_iter().unzip();
+    if let Some(path) = dump {
+        write(path, scene, &rays)
+            .map_err(|error| Error::invalid(path.display().to_string(), error.to_string()))?;
+    }
     let (queries, rays) = (backend.upload(&queries)?, backend.upload(&rays)?);
     let mut elements = backend.zeroed::<LhbElement>(QUERIES)?;
     let mut hits = backend.zeroed::<Hit>(QUERIES)?;
@@ -58,6 +66,27 @@ pub fn time(
         core.0, core.1, core.2, ratio.0, ratio.1, ratio.2
     );
     Ok(())
+}
+
+/// The numbers of triangles and rays as u64, the corners, the rays; everything little-endian where the machine is.
+fn write(path: &Path, scene: &CompiledScene, rays: &[Ray]) -> std::io::Result<()> {
+    let mut file = BufWriter::new(File::create(path)?);
+    for count in [scene.triangles.len(), rays.len()] {
+        file.write_all(&(count as u64).to_ne_bytes())?;
+    }
+    for triangle in &scene.triangles {
+        for coordinate in [triangle.p0, triangle.p1, triangle.p2].as_flattened() {
+            file.write_all(&coordinate.to_ne_bytes())?;
+        }
+    }
+    for ray in rays {
+        let words = [ray.origin[0], ray.origin[1], ray.origin[2], ray.t_min];
+        let rest = [ray.direction[0], ray.direction[1], ray.direction[2], ray.t_max];
+        for word in [words, rest].as_flattened() {
+            file.write_all(&word.to_ne_bytes())?;
+        }
+    }
+    file.flush()
 }
 
 /// A random point on a triangle, the normal, a direction away from it, and what it leaves.
