@@ -64,9 +64,8 @@ fn check<B: Backend>(cx: &Context<'_, B>, case: &Looked) -> Check {
     let settings = LookupSettings {
         directions: case.directions.parse()?,
         size: case.size,
-        layers: None,
-        cone: true,
         trace_misses: case.trace_misses,
+        ..LookupSettings::default()
     };
     let prepared = Prepared::with(cx.backend, &compiled, &settings)?;
     let mean = Mean::of(&walked(cx.backend, &prepared, &params)?, &params)?;

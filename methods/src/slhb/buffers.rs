@@ -21,13 +21,16 @@ pub struct LookupSettings {
     pub cone: bool,
     /// Whether rays that lookups find nothing for are traced, because lines beside a silhouette lose light.
     pub trace_misses: bool,
+    /// Pixels per row and column of an interleaved pattern: pixels that far apart draw the same random numbers, so that [`super::filter()`] finds
+    /// every pattern in its window. 1 gives every pixel numbers of its own.
+    pub interleave: u32,
 }
 
 impl Default for LookupSettings {
     fn default() -> Self {
         let directions =
             DirectionSet::icosahedron(2).unwrap_or_else(|_| unreachable!("a size that the set has"));
-        Self { directions, size: 128, layers: None, cone: true, trace_misses: true }
+        Self { directions, size: 128, layers: None, cone: true, trace_misses: true, interleave: 1 }
     }
 }
 
@@ -95,7 +98,7 @@ pub fn build<B: Backend>(
         subpixel_bits: subpixel_bits(size),
         map_resolution: map.resolution(),
         flags: flag(settings.cone, CONE) | flag(settings.trace_misses, TRACE_MISSES),
-        interleave: 0,
+        interleave: settings.interleave,
     };
     let map = backend.upload(&map.ray_words(&settings.directions))?;
     Ok(Buffers { mesh, lhb, views, map, lookup, build_time })

@@ -2,12 +2,14 @@
 //!
 //! [`build`] rasterizes a scene along every direction of a set and keeps all layers; [`render`] walks paths through the buffers
 //! with the kernel `walk_lhb`. Biased, in exchange for lookups that cost a fraction of a ray: the error falls with the number
-//! of directions and pixels. *Source.* Yu, spherical layered hit buffers.
+//! of directions and pixels. [`filter`] averages what is left of the noise over neighbours. *Source.* Yu, spherical layered hit buffers.
 
 mod buffers;
+mod filter;
 mod sheet;
 
 pub use buffers::{Buffers, LookupSettings, build};
+pub use filter::{Filtered, filter};
 pub use sheet::{Sheet, sheet};
 
 use crate::reference::{Control, Progress, Rendered, Settings, accumulate};

@@ -87,13 +87,8 @@ fn the_cone_smooths<B: Backend>(cx: &Context<'_, B>) -> Check {
     let directions: DirectionSet = "icosahedron:80".parse()?;
     let mut errors = Vec::new();
     for cone in [true, false] {
-        let settings = LookupSettings {
-            directions: directions.clone(),
-            size: 64,
-            layers: None,
-            cone,
-            trace_misses: true,
-        };
+        let settings =
+            LookupSettings { directions: directions.clone(), size: 64, cone, ..LookupSettings::default() };
         let prepared = Prepared::with(cx.backend, &compiled, &settings)?;
         errors.push(Picture::of(&walked(cx.backend, &prepared, &call)?).error(&reference));
     }
@@ -111,7 +106,7 @@ fn misses_are_traced<B: Backend>(cx: &Context<'_, B>) -> Check {
     let mut ratios = Vec::new();
     for trace_misses in [true, false] {
         let directions = "icosahedron:80".parse()?;
-        let settings = LookupSettings { directions, size: 16, layers: None, cone: true, trace_misses };
+        let settings = LookupSettings { directions, size: 16, trace_misses, ..LookupSettings::default() };
         let prepared = Prepared::with(cx.backend, &compiled, &settings)?;
         ratios.push(Picture::of(&walked(cx.backend, &prepared, &call)?).light / reference);
     }

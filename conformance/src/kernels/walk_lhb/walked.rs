@@ -23,7 +23,7 @@ impl<B: Backend> Prepared<B> {
         size: u32,
     ) -> Result<Self, Failure> {
         let directions: DirectionSet = directions.parse()?;
-        let settings = LookupSettings { directions, size, layers: None, cone: true, trace_misses: false };
+        let settings = LookupSettings { directions, size, trace_misses: false, ..LookupSettings::default() };
         Self::with(backend, compiled, &settings)
     }
 
