@@ -11,6 +11,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
@@ -267,6 +268,28 @@ impl Backend for CpuBackend {
         self.run("walk_lhb", || {
             kernels::walk_lhb::walk_lhb(self.isa, scene.data(), lookups, params, film);
             Ok(())
+        })
+    }
+
+    fn filter_indirect(
+        &self,
+        gbuffer: &CpuBuffer<GBufferTexel>,
+        diffuse: &CpuBuffer<u32>,
+        input: &CpuBuffer<RadianceTexel>,
+        params: &FilterIndirectParams,
+        output: &mut CpuBuffer<RadianceTexel>,
+    ) -> Result<()> {
+        let (gbuffer, input, output) = (gbuffer.as_slice(), input.as_slice(), output.as_mut_slice());
+        params.check([gbuffer.len(), input.len(), output.len()])?;
+        self.run("filter_indirect", || {
+            kernels::filter_indirect::filter_indirect(
+                self.isa,
+                gbuffer,
+                diffuse.as_slice(),
+                input,
+                params,
+                output,
+            )
         })
     }
 }

@@ -3,12 +3,14 @@
 use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
 use crate::kernels::{
-    merge_lhb, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths, walk_lhb,
+    filter_indirect, merge_lhb, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths,
+    walk_lhb,
 };
 use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
 use crate::strict::Mode;
 use bytemuck::Pod;
+use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
@@ -170,5 +172,16 @@ impl Backend for GpuBackend {
         film: &mut GpuBuffer<FilmTexel>,
     ) -> Result<()> {
         walk_lhb::run(&self.device, scene, mesh, lhb, views, map, params, film)
+    }
+
+    fn filter_indirect(
+        &self,
+        gbuffer: &GpuBuffer<GBufferTexel>,
+        diffuse: &GpuBuffer<u32>,
+        input: &GpuBuffer<RadianceTexel>,
+        params: &FilterIndirectParams,
+        output: &mut GpuBuffer<RadianceTexel>,
+    ) -> Result<()> {
+        filter_indirect::run(&self.device, gbuffer, diffuse, input, params, output)
     }
 }

@@ -5,13 +5,14 @@
 
 use std::mem::{offset_of, size_of};
 use twinlight_backend_gpu::kernels::{
-    self, merge_lhb, path, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths, walk_lhb,
+    self, filter_indirect, merge_lhb, path, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace,
+    trace_paths, walk_lhb,
 };
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
-    merge_lhb as merge_contract, query_lhb as query_contract, rasterize_lhb as lhb_contract,
-    shade_primary as shade_contract, trace as trace_contract, trace_paths as paths_contract,
-    walk_lhb as walk_contract,
+    filter_indirect as filter_contract, merge_lhb as merge_contract, query_lhb as query_contract,
+    rasterize_lhb as lhb_contract, shade_primary as shade_contract, trace as trace_contract,
+    trace_paths as paths_contract, walk_lhb as walk_contract,
 };
 use twinlight_core::transport::{intersect, lhb, light};
 use twinlight_core::{bvh, lattice, math, scene, transport};
@@ -257,6 +258,40 @@ fn twins() -> Vec<Twins> {
                 ("LEAST_SLOPE", lhb::LEAST_SLOPE.into()),
                 ("GREATEST_SLOPE", lhb::GREATEST_SLOPE.into()),
             ])),
+        },
+        Twins {
+            source: &filter_indirect::SOURCE,
+            structs: vec![
+                layout!(filter_indirect::FilterIndirectBlock {
+                    width,
+                    height,
+                    window,
+                    least_cosine,
+                    footprint,
+                    diffuse_count,
+                    pixel_begin,
+                    pixel_count,
+                    neighbour_begin,
+                    loop_rounds,
+                    padding,
+                }),
+                layout!(shade_contract::GBufferTexel {
+                    position,
+                    depth,
+                    geometric_normal,
+                    triangle,
+                    shading_normal,
+                    material,
+                    albedo,
+                    padding,
+                }),
+                layout!(filter_contract::RadianceTexel { rgb, padding }),
+            ],
+            constants: vec![
+                ("WORKGROUP_SIZE", filter_indirect::WORKGROUP_SIZE.into()),
+                ("LEAST_ALBEDO", filter_contract::LEAST_ALBEDO.into()),
+                ("NO_HIT", trace_contract::NO_HIT.into()),
+            ],
         },
     ]
 }

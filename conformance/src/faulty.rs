@@ -12,6 +12,7 @@ mod walk_lhb;
 
 use crate::faults::Fault;
 use bytemuck::Pod;
+use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
@@ -172,5 +173,16 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         film: &mut B::Buffer<FilmTexel>,
     ) -> Result<()> {
         walk_lhb::walk_lhb(self.inner, self.fault, scene, mesh, lhb, views, map, params, film)
+    }
+
+    fn filter_indirect(
+        &self,
+        gbuffer: &B::Buffer<GBufferTexel>,
+        diffuse: &B::Buffer<u32>,
+        input: &B::Buffer<RadianceTexel>,
+        params: &FilterIndirectParams,
+        output: &mut B::Buffer<RadianceTexel>,
+    ) -> Result<()> {
+        self.inner.filter_indirect(gbuffer, diffuse, input, params, output)
     }
 }

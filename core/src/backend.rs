@@ -1,6 +1,7 @@
 //! `Backend`: typed buffers and one method per kernel. The library's table of contents.
 
 use crate::error::Result;
+use crate::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
 use crate::kernels::merge_lhb::MergeLhbParams;
 use crate::kernels::query_lhb::LhbQuery;
 use crate::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
@@ -182,5 +183,18 @@ pub trait Backend {
         map: &Self::Buffer<u32>,
         params: &WalkLhbParams,
         film: &mut Self::Buffer<FilmTexel>,
+    ) -> Result<()>;
+
+    /// Indirect light, averaged over neighbours that show the same diffuse surface. Contract: [`crate::kernels::filter_indirect`].
+    ///
+    /// # Errors
+    /// As [`FilterIndirectParams::check`].
+    fn filter_indirect(
+        &self,
+        gbuffer: &Self::Buffer<GBufferTexel>,
+        diffuse: &Self::Buffer<u32>,
+        input: &Self::Buffer<RadianceTexel>,
+        params: &FilterIndirectParams,
+        output: &mut Self::Buffer<RadianceTexel>,
     ) -> Result<()>;
 }

@@ -2,6 +2,9 @@
 //!
 //! [`post`] compares, tone-maps and colours finished images; it knows no backend.
 
+mod gbuffer;
 pub mod post;
 pub mod reference;
 pub mod slhb;
+
+pub use gbuffer::gbuffer;

@@ -1,5 +1,6 @@
 //! The CPU twins. Contracts: [`twinlight_core::kernels`].
 
+pub(crate) mod filter_indirect;
 pub(crate) mod merge_lhb;
 pub(crate) mod query_lhb;
 pub(crate) mod rasterize_lhb;

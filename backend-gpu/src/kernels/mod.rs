@@ -3,6 +3,7 @@
 //! To add one: write the two files, add the module here and its [`KernelSource`] to [`ALL`], and the method to
 //! `backend.rs`. The tests `sources` and `layout` find it through [`ALL`].
 
+pub mod filter_indirect;
 pub mod merge_lhb;
 pub mod path;
 pub mod query_lhb;
@@ -28,4 +29,5 @@ pub const ALL: &[&KernelSource] = &[
     &shade_primary::SOURCE,
     &trace_paths::SOURCE,
     &walk_lhb::SOURCE,
+    &filter_indirect::SOURCE,
 ];

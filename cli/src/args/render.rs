@@ -3,10 +3,12 @@
 use super::values::{
     BackendChoice, Bounces, Bytes, CameraArg, FrameRange, Size, frame_rate, moment, seconds,
 };
+use clap::builder::RangedI64ValueParser;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use twinlight::directions::DirectionSet;
 use twinlight::io::LoadOptions;
+use twinlight::kernels::filter_indirect::MAX_WINDOW;
 use twinlight::methods::post::tonemap::Operator;
 use twinlight::methods::reference::Sampler;
 use twinlight::scene::Limits;
@@ -216,6 +218,30 @@ pub struct SlhbArgs {
     /// Whether the first vertex of each path gathers light along all directions
     #[arg(long, value_name = "WHAT", env = "TWINLIGHT_GATHER", default_value = "off")]
     pub gather: GatherName,
+    /// Give every tile of N x N pixels the same random numbers, 1 to 32: noise that --filter N averages best [default: 1, off]
+    #[arg(long, value_name = "N", env = "TWINLIGHT_INTERLEAVE", default_value_t = 1, hide_default_value = true,
+          value_parser = window())]
+    pub interleave: u32,
+    /// Average indirect light over N x N pixels that show the same diffuse surface, 1 to 32: less noise, blurred contact shadows
+    /// [default: 1, off]
+    #[arg(long, value_name = "N", env = "TWINLIGHT_FILTER", default_value_t = 1, hide_default_value = true, value_parser = window())]
+    pub filter: u32,
+}
+
+impl SlhbArgs {
+    /// The flag that asks for what only this method does.
+    pub fn asked_for(&self) -> Option<&'static str> {
+        let flags = [
+            ("--gather", self.gather == GatherName::All),
+            ("--interleave", self.interleave > 1),
+            ("--filter", self.filter > 1),
+        ];
+        flags.into_iter().find(|(_, is_asked_for)| *is_asked_for).map(|(flag, _)| flag)
+    }
+}
+
+fn window() -> RangedI64ValueParser<u32> {
+    clap::value_parser!(u32).range(1..=i64::from(MAX_WINDOW))
 }
 
 fn direction_set(text: &str) -> Result<DirectionSet, String> {

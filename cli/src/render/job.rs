@@ -27,6 +27,8 @@ pub struct Job {
     pub method: MethodName,
     /// For slhb.
     pub lookups: LookupSettings,
+    /// Window over which indirect light is averaged, pixels; 1 averages nothing.
+    pub filter: u32,
     /// For the method.
     pub settings: Settings,
     /// Time limit.
@@ -39,7 +41,7 @@ impl Job {
     /// Merges flags and the scene's settings.
     ///
     /// # Errors
-    /// [`Error::InvalidInput`] for settings of the scene file that make no sense, [`Error::LimitExceeded`] when the
+    /// [`Failure::Usage`] for flags of another method, [`Error::InvalidInput`] for settings of the scene file that make no sense, [`Error::LimitExceeded`] when the
     /// picture needs more memory than allowed.
     pub fn new(args: &RenderArgs, prepared: &Prepared) -> Result<Self, Failure> {
         let own = &prepared.settings;
@@ -51,6 +53,10 @@ impl Job {
                 input("render.method", format!("no method is called '{name}'; there are reference and slhb"))
             })?,
         };
+        if let Some(flag) = args.slhb.asked_for().filter(|_| method != MethodName::Slhb) {
+            let what = format!("{flag} is for --method slhb, and this is {}", method.key());
+            return Err(Failure::Usage(what));
+        }
         let size = args.size.or(own.size.map(|[w, h]| Size(w, h))).unwrap_or(Size(512, 512));
         let time = args.time.map(Duration::from_secs_f64);
         let samples = match (args.spp, time) {
@@ -92,8 +98,9 @@ impl Job {
             cone: knobs.cone == ConeName::Auto,
             trace_misses: knobs.misses == MissesName::Trace,
             gather: knobs.gather == GatherName::All,
+            interleave: knobs.interleave,
         };
-        Ok(Self { method, lookups, settings, time, camera })
+        Ok(Self { method, lookups, filter: knobs.filter, settings, time, camera })
     }
 }
 

@@ -1,5 +1,6 @@
 //! Pictures from a film and a G-buffer.
 
+use super::run::Surfaces;
 use crate::exit::Failure;
 use twinlight::io::image::LayeredImage;
 use twinlight::kernels::shade_primary::GBufferTexel;
@@ -10,23 +11,21 @@ use twinlight::methods::reference::Film;
 /// What files are made from.
 pub struct Pictures<'a> {
     film: &'a Film,
-    gbuffer: Option<&'a [GBufferTexel]>,
+    surfaces: Option<&'a Surfaces>,
     beauty: Image,
     display: Display,
 }
 
 impl<'a> Pictures<'a> {
-    /// Pictures of a film; `gbuffer` has a texel per pixel.
+    /// Pictures of a film, with filtered light where `surfaces` have some.
     ///
     /// # Errors
     /// When the film has no pixels.
-    pub fn new(
-        film: &'a Film,
-        gbuffer: Option<&'a [GBufferTexel]>,
-        display: Display,
-    ) -> Result<Self, Failure> {
-        let beauty = Image::new(film.width(), film.height(), film.radiance()).map_err(Failure::Pictures)?;
-        Ok(Self { film, gbuffer, beauty, display })
+    pub fn new(film: &'a Film, surfaces: Option<&'a Surfaces>, display: Display) -> Result<Self, Failure> {
+        let filtered = surfaces.and_then(|surfaces| surfaces.filtered.as_ref());
+        let radiance = filtered.map_or_else(|| film.radiance(), |filtered| filtered.radiance.clone());
+        let beauty = Image::new(film.width(), film.height(), radiance).map_err(Failure::Pictures)?;
+        Ok(Self { film, surfaces, beauty, display })
     }
 
     /// Pixels per row, rows.
@@ -44,9 +43,13 @@ impl<'a> Pictures<'a> {
         let mut image = LayeredImage::new(self.film.width(), self.film.height());
         image.add_rgb("", self.beauty.pixels());
         image.add_rgb("direct", &self.film.direct());
-        image.add_rgb("indirect", &self.film.indirect());
+        match self.surfaces.and_then(|surfaces| surfaces.filtered.as_ref()) {
+            Some(filtered) => image.add_rgb("indirect", &filtered.indirect),
+            None => image.add_rgb("indirect", &self.film.indirect()),
+        }
+        // That of the samples, whatever is averaged.
         image.add_f32("variance.Y", self.film.variance());
-        if let Some(gbuffer) = self.gbuffer {
+        if let Some(Surfaces { gbuffer, .. }) = self.surfaces {
             let vectors = |pick: fn(&GBufferTexel) -> [f32; 3]| gbuffer.iter().map(pick).collect::<Vec<_>>();
             image.add_rgb("albedo", &vectors(|t| t.albedo));
             image.add_xyz("N", &vectors(|t| t.shading_normal));

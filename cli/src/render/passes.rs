@@ -156,6 +156,7 @@ mod tests {
         let job = Job {
             method: crate::args::MethodName::Reference,
             lookups: slhb::LookupSettings::default(),
+            filter: 1,
             settings,
             time: None,
             camera: Camera::of_scene(&scene).unwrap(),

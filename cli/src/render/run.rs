@@ -12,8 +12,10 @@ use std::time::{Duration, Instant};
 use twinlight::cpu::CpuBackend;
 #[cfg(feature = "gpu")]
 use twinlight::gpu::GpuBackend;
-use twinlight::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
-use twinlight::methods::slhb;
+use twinlight::kernels::shade_primary::GBufferTexel;
+use twinlight::methods::gbuffer;
+use twinlight::methods::reference::Film;
+use twinlight::methods::slhb::{self, Filtered};
 use twinlight::{Backend, BackendInfo, Error};
 
 /// Hit buffers, for the sidecar.
@@ -30,20 +32,30 @@ pub struct Built {
     pub bytes: u64,
 }
 
+/// What the camera sees, and what is made with it.
+pub struct Surfaces {
+    /// The G-buffer.
+    pub gbuffer: Vec<GBufferTexel>,
+    /// Time for it.
+    pub gbuffer_time: Duration,
+    /// The picture with its indirect light averaged, where that was asked for.
+    pub filtered: Option<Filtered>,
+    /// Time for that.
+    pub filter_time: Duration,
+}
+
 /// What a backend made of a job.
 pub struct Done {
     /// The samples.
     pub taken: Taken,
-    /// What the camera sees, where the backend has the kernel.
-    pub gbuffer: Option<Vec<GBufferTexel>>,
+    /// What the camera sees, if it was looked at.
+    pub surfaces: Option<Surfaces>,
     /// The method's hit buffers, where it has any.
     pub lookups: Option<Built>,
     /// What ran it.
     pub info: BackendInfo,
     /// Time to make the scene resident.
     pub upload_time: Duration,
-    /// Time for the G-buffer.
-    pub gbuffer_time: Duration,
 }
 
 /// Hit buffers of what stays from frame to frame, for whichever backend renders.
@@ -136,34 +148,48 @@ impl Session<'_> {
             tell(format!("{lost}; what was finished before is saved"));
         }
 
-        let start = Instant::now();
         // A lost device answers nothing more, and an interrupted user waits for nothing more.
         let wanted = matches!(taken.stop, Stop::Samples | Stop::Time);
         if !wanted && saved {
-            tell(format!(
-                "no albedo, normal, depth and id layers: the render ended early ({})",
-                taken.stop.name()
-            ));
+            tell(format!("{}: the render ended early ({})", self.missing(), taken.stop.name()));
         }
-        let gbuffer = match wanted.then(|| self.gbuffer(backend, &resident)) {
+        let surfaces = match wanted.then(|| self.surfaces(backend, &resident, &taken.film)) {
             None => None,
-            Some(Ok(gbuffer)) => Some(gbuffer),
+            Some(Ok(surfaces)) => Some(surfaces),
             Some(Err(Error::Unsupported(why))) => {
-                tell(format!("no albedo, normal, depth and id layers: {why}"));
+                tell(format!("{}: {why}", self.missing()));
                 None
             }
             Some(Err(error)) => return Err(error),
         };
-        let gbuffer_time = start.elapsed();
-        Ok(Done { taken, gbuffer, lookups, info: backend.info(), upload_time, gbuffer_time })
+        Ok(Done { taken, surfaces, lookups, info: backend.info(), upload_time })
     }
 
-    fn gbuffer<B: Backend>(&self, backend: &B, resident: &B::Scene) -> twinlight::Result<Vec<GBufferTexel>> {
-        let (width, height) = (self.job.settings.width, self.job.settings.height);
-        let camera = self.job.camera.record(width, height, self.prepared.compiled.origin)?;
-        let params = ShadePrimaryParams { camera, width, height, padding: [0; 2] };
-        let mut gbuffer = backend.zeroed::<GBufferTexel>(width as usize * height as usize)?;
-        backend.shade_primary(resident, &params, &mut gbuffer)?;
-        backend.download(&gbuffer)
+    /// What a picture lacks without [`Surfaces`].
+    fn missing(&self) -> &'static str {
+        if self.job.filter > 1 {
+            "no albedo, normal, depth and id layers, and indirect light is not filtered"
+        } else {
+            "no albedo, normal, depth and id layers"
+        }
+    }
+
+    fn surfaces<B: Backend>(
+        &self,
+        backend: &B,
+        resident: &B::Scene,
+        film: &Film,
+    ) -> twinlight::Result<Surfaces> {
+        let (job, compiled) = (self.job, &self.prepared.compiled);
+        let start = Instant::now();
+        let gbuffer = gbuffer(backend, resident, compiled, &job.camera, (film.width(), film.height()))?;
+        let texels = backend.download(&gbuffer)?;
+        let gbuffer_time = start.elapsed();
+        let start = Instant::now();
+        let filtered = match job.filter {
+            1 => None,
+            window => Some(slhb::filter(backend, compiled, &job.camera, &gbuffer, film, window)?),
+        };
+        Ok(Surfaces { gbuffer: texels, gbuffer_time, filtered, filter_time: start.elapsed() })
     }
 }

@@ -69,6 +69,7 @@ pub fn json(
     let seconds = |d: Duration| (d.as_secs_f64() * 1e6).round_ties_even() / 1e6;
     let pixels = u64::from(settings.width) * u64::from(settings.height);
     let kernel = if done.lookups.is_some() { "walk_lhb" } else { "trace_paths" };
+    let filtered = done.surfaces.as_ref().filter(|surfaces| surfaces.filtered.is_some());
     let value = json!({
         "twinlight": env!("CARGO_PKG_VERSION"),
         "scene": { "source": args.scene, "triangles": prepared.scene.triangle_count() },
@@ -83,6 +84,8 @@ pub fn json(
                 "cone": job.lookups.cone,
                 "gather": job.lookups.gather,
                 "trace_misses": job.lookups.trace_misses,
+                "interleave": job.lookups.interleave,
+                "filter": job.filter,
             })),
             "size": [settings.width, settings.height],
             "spp": args.spp.or(job.time.is_none().then_some(settings.samples)),
@@ -117,7 +120,8 @@ pub fn json(
             "upload": seconds(done.upload_time),
             "rasterize_lhb": done.lookups.as_ref().map(|built| seconds(built.time)),
             (kernel): seconds(done.taken.elapsed),
-            "shade_primary": done.gbuffer.is_some().then(|| seconds(done.gbuffer_time)),
+            "shade_primary": done.surfaces.as_ref().map(|surfaces| seconds(surfaces.gbuffer_time)),
+            "filter_indirect": filtered.map(|surfaces| seconds(surfaces.filter_time)),
             "write": seconds(times.write),
             "total": seconds(times.total),
         },

@@ -85,7 +85,7 @@ impl<'a> Studio<'a> {
         start: Instant,
     ) -> Result<(), Failure> {
         let write_start = Instant::now();
-        let pictures = Pictures::new(&done.taken.film, done.gbuffer.as_deref(), self.tone)?;
+        let pictures = Pictures::new(&done.taken.film, done.surfaces.as_ref(), self.tone)?;
         outputs.write(&pictures, &sidecar::attributes(self.args, job, done, moment))?;
         let times = sidecar::Times { write: write_start.elapsed(), total: start.elapsed() };
         let text = sidecar::json(self.args, prepared, job, done, moment, outputs, notices, &times);

@@ -25,13 +25,24 @@ pub struct LookupSettings {
     /// Whether light at first vertices is a sum over all directions: the deterministic gather. Samples are best a multiple of their
     /// number.
     pub gather: bool,
+    /// Pixels per row and column of an interleaved pattern: pixels that far apart draw the same random numbers, so that [`super::filter()`] finds
+    /// every pattern in its window. 1 gives every pixel numbers of its own.
+    pub interleave: u32,
 }
 
 impl Default for LookupSettings {
     fn default() -> Self {
         let directions =
             DirectionSet::icosahedron(2).unwrap_or_else(|_| unreachable!("a size that the set has"));
-        Self { directions, size: 128, layers: None, cone: true, trace_misses: true, gather: false }
+        Self {
+            directions,
+            size: 128,
+            layers: None,
+            cone: true,
+            trace_misses: true,
+            gather: false,
+            interleave: 1,
+        }
     }
 }
 

@@ -1,15 +1,18 @@
 //! Spherical layered hit buffers: indirect light by looking up, not tracing, what a surface sees.
 //!
 //! [`build`] rasterizes a scene along every direction of a set and keeps all layers; [`render`] walks paths through the buffers
-//! with the kernel `walk_lhb`. In a scene that moves, [`Kept`] rasterizes only what moves again. Biased, in exchange for lookups that
-//! cost a fraction of a ray: the error falls with the number of directions and pixels. *Source.* Yu, spherical layered hit buffers.
+//! with the kernel `walk_lhb`. In a scene that moves, [`Kept`] rasterizes only what moves again. [`filter`] averages what is left of the
+//! noise over neighbours. Biased, in exchange for lookups that cost a fraction of a ray: the error falls with the number of directions
+//! and pixels. *Source.* Yu, spherical layered hit buffers.
 
 mod buffers;
+mod filter;
 mod kept;
 mod plan;
 mod sheet;
 
 pub use buffers::{Buffers, LookupSettings, build};
+pub use filter::{Filtered, filter};
 pub use kept::Kept;
 pub use sheet::{Sheet, sheet};
 

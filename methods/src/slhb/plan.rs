@@ -90,7 +90,7 @@ impl Plan {
             flags: flag(settings.cone, CONE)
                 | flag(settings.trace_misses, TRACE_MISSES)
                 | flag(settings.gather, GATHER),
-            interleave: 0,
+            interleave: settings.interleave,
             gather_begin: self.gather_begin,
             gather_count: settings.directions.len() as u32,
             padding: [0; 2],

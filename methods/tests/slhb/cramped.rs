@@ -3,6 +3,7 @@
 use crate::lookups;
 use bytemuck::Pod;
 use twinlight_backend_cpu::{CpuBackend, CpuBuffer, CpuMesh};
+use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
@@ -103,6 +104,17 @@ impl Backend for Cramped {
         _: &[View],
         _: &Buffer<LhbQuery>,
         _: &mut Buffer<LhbElement>,
+    ) -> Result<()> {
+        unreachable!("{OTHER}")
+    }
+
+    fn filter_indirect(
+        &self,
+        _: &Buffer<GBufferTexel>,
+        _: &Buffer<u32>,
+        _: &Buffer<RadianceTexel>,
+        _: &FilterIndirectParams,
+        _: &mut Buffer<RadianceTexel>,
     ) -> Result<()> {
         unreachable!("{OTHER}")
     }

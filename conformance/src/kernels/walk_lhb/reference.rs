@@ -87,14 +87,8 @@ fn the_cone_smooths<B: Backend>(cx: &Context<'_, B>) -> Check {
     let directions: DirectionSet = "icosahedron:80".parse()?;
     let mut errors = Vec::new();
     for cone in [true, false] {
-        let settings = LookupSettings {
-            directions: directions.clone(),
-            size: 64,
-            layers: None,
-            cone,
-            trace_misses: true,
-            gather: false,
-        };
+        let settings =
+            LookupSettings { directions: directions.clone(), size: 64, cone, ..LookupSettings::default() };
         let prepared = Prepared::with(cx.backend, &compiled, &settings)?;
         errors.push(Picture::of(&walked(cx.backend, &prepared, &call)?).error(&reference));
     }
