@@ -1,5 +1,6 @@
 //! A backend with one planted bug: everything goes through to a sound backend, and one result comes back wrong.
 
+mod filter_indirect;
 mod merge_lhb;
 mod query_lhb;
 mod rasterize_lhb;
@@ -183,6 +184,6 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &FilterIndirectParams,
         output: &mut B::Buffer<RadianceTexel>,
     ) -> Result<()> {
-        self.inner.filter_indirect(gbuffer, diffuse, input, params, output)
+        filter_indirect::filter_indirect(self.inner, self.fault, gbuffer, diffuse, input, params, output)
     }
 }

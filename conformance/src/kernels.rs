@@ -1,5 +1,6 @@
 //! Cases and laws of every kernel, in pipeline order.
 
+pub mod filter_indirect;
 pub mod merge_lhb;
 mod property;
 pub mod query_lhb;
@@ -15,7 +16,7 @@ use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 9] = [
+pub const STEMS: [&str; 10] = [
     "scan",
     "sort",
     "rasterize_lhb",
@@ -25,6 +26,7 @@ pub const STEMS: [&str; 9] = [
     "shade_primary",
     "trace_paths",
     "walk_lhb",
+    "filter_indirect",
 ];
 
 /// Lists every kernel's trials.
@@ -38,6 +40,7 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     shade_primary::list(list);
     trace_paths::list(list);
     walk_lhb::list(list);
+    filter_indirect::list(list);
 }
 
 /// Bit equality is promised where float results are those of IEEE 754 evaluated as written.

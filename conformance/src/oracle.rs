@@ -1,6 +1,7 @@
 //! Third opinions, one per kernel: serial, naive on purpose, exact or in f64. They share no algorithm with either twin,
 //! so that a misreading both twins share still shows.
 
+pub mod filter_indirect;
 pub mod merge_lhb;
 pub mod query_lhb;
 pub mod rasterize_lhb;

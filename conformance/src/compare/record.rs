@@ -1,6 +1,7 @@
 //! How elements split into named fields, so that evidence can say which one differs.
 
 use bytemuck::Pod;
+use twinlight_core::kernels::filter_indirect::RadianceTexel;
 use twinlight_core::kernels::rasterize_lhb::LhbElement;
 use twinlight_core::kernels::shade_primary::GBufferTexel;
 use twinlight_core::kernels::trace::Hit;
@@ -112,4 +113,8 @@ impl Record for FilmTexel {
         field("samples", Kind::Unsigned, 1),
         field("rejected", Kind::Unsigned, 1),
     ];
+}
+
+impl Record for RadianceTexel {
+    const FIELDS: &'static [Field] = &[field("rgb", Kind::Float, 3), field("padding", Kind::Unsigned, 1)];
 }

@@ -1,5 +1,6 @@
 use super::*;
 use crate::trial::Options;
+use twinlight_core::kernels::filter_indirect::RadianceTexel;
 use twinlight_core::kernels::rasterize_lhb::LhbElement;
 use twinlight_core::kernels::shade_primary::GBufferTexel;
 use twinlight_core::kernels::trace::Hit;
@@ -31,6 +32,7 @@ fn fields_cover_their_records() {
         bytes::<GBufferTexel>(),
         bytes::<FilmTexel>(),
         bytes::<LhbElement>(),
+        bytes::<RadianceTexel>(),
     ] {
         assert_eq!(fields, record);
     }
