@@ -4,6 +4,7 @@
 
 mod chunks;
 mod device;
+mod filters;
 mod lhb;
 mod lookups;
 mod merges;
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
     let checks: Vec<(&str, Check)> = [
         chunks::CHECKS,
         device::CHECKS,
+        filters::CHECKS,
         lhb::CHECKS,
         lookups::CHECKS,
         merges::CHECKS,

@@ -1,5 +1,7 @@
 //! Layered hit buffers as a method: bits, bias against the reference tracer with equal bounces, and what the knobs do.
 
+mod filter;
+
 use twinlight_backend_cpu::CpuBackend;
 use twinlight_core::Backend;
 use twinlight_core::scene::{Camera, CompiledScene, Limits, compile};
