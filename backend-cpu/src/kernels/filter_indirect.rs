@@ -9,7 +9,6 @@
 use crate::buffer::try_zeroed;
 use crate::parallel::fill_chunks;
 use crate::simd::{Isa, Kernel, LaneMask, Lanes, Width};
-use bytemuck::Zeroable;
 use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, LEAST_ALBEDO, RadianceTexel};
 use twinlight_core::kernels::shade_primary::GBufferTexel;
 use twinlight_core::kernels::trace::NO_HIT;
@@ -109,7 +108,8 @@ impl Planes {
 
     #[inline(always)]
     fn load_vector<W: Width>(&self, width: W, row: usize, plane: usize, column: isize) -> Vector<W> {
-        [0, 1, 2].map(|axis| self.load(width, row, plane + axis, column))
+        let (x, y) = (self.load(width, row, plane, column), self.load(width, row, plane + 1, column));
+        [x, y, self.load(width, row, plane + 2, column)]
     }
 }
 
@@ -214,14 +214,12 @@ fn filter_pixels<W: Width>(
     let centre = centre_of(width, picture.params, planes, row, column, gbuffer);
     let sums = sum_neighbours(width, picture.params, planes, &centre, row, column);
     // [4] light of the pixel
-    let [light, weight] = [sums.light, sums.weight].map(|vector| vector.map(|channel| channel.to_array()));
-    for (lane, (surface, texel)) in gbuffer.iter().zip(texels).enumerate() {
-        if !picture.is_diffuse(surface) {
-            continue;
-        }
-        for c in 0..3 {
-            if surface.albedo[c] >= LEAST_ALBEDO && weight[c][lane] > 0.0 {
-                texel.rgb[c] = surface.albedo[c] * light[c][lane] / weight[c][lane];
+    for c in 0..3 {
+        let (light, weight) = (sums.light[c].to_array(), sums.weight[c].to_array());
+        for (lane, (surface, texel)) in gbuffer.iter().zip(&mut *texels).enumerate() {
+            let albedo = surface.albedo[c];
+            if picture.is_diffuse(surface) && albedo >= LEAST_ALBEDO && weight[lane] > 0.0 {
+                texel.rgb[c] = albedo * light[lane] / weight[lane];
             }
         }
     }
@@ -236,17 +234,23 @@ fn centre_of<W: Width>(
     column: usize,
     gbuffer: &[GBufferTexel],
 ) -> Centre<W> {
-    let mut lanes = [GBufferTexel::zeroed(); LANES];
-    lanes[..gbuffer.len()].copy_from_slice(gbuffer);
     let widest = params.footprint * params.window as f32;
+    let (mut normal, mut reach) = ([[0.0; LANES]; 3], [0.0; LANES]);
+    for (lane, texel) in gbuffer.iter().enumerate() {
+        for c in 0..3 {
+            normal[c][lane] = texel.geometric_normal[c];
+        }
+        reach[lane] = widest * texel.depth;
+    }
+    let [x, y, z] = &normal;
     let column = column as isize;
     Centre {
         key: planes.load(width, row, KEY, column),
         position: planes.load_vector(width, row, POSITION, column),
         shading_normal: planes.load_vector(width, row, NORMAL, column),
-        geometric_normal: [0, 1, 2].map(|c| W::F8::load(width, &lanes.map(|t| t.geometric_normal[c]))),
+        geometric_normal: [W::F8::load(width, x), W::F8::load(width, y), W::F8::load(width, z)],
         least_cosine: W::F8::splat(width, params.least_cosine),
-        reach: W::F8::load(width, &lanes.map(|t| widest * t.depth)),
+        reach: W::F8::load(width, &reach),
     }
 }
 
@@ -298,7 +302,8 @@ fn is_joined<W: Width>(
     let key = planes.load(width, row, KEY, column);
     let position = planes.load_vector(width, row, POSITION, column);
     let normal = planes.load_vector(width, row, NORMAL, column);
-    let along = [0, 1, 2].map(|c| position[c] - centre.position[c]);
+    let from = centre.position;
+    let along = [position[0] - from[0], position[1] - from[1], position[2] - from[2]];
     let distance = dot::<W>(centre.geometric_normal, along).abs();
     key.le(centre.key)
         & centre.key.le(key)

@@ -4,7 +4,11 @@
 
 mod chunks;
 mod device;
+<<<<<<< HEAD
 mod frames;
+=======
+mod filters;
+>>>>>>> filt
 mod lhb;
 mod lookups;
 mod merges;
@@ -41,7 +45,11 @@ fn main() -> ExitCode {
     let checks: Vec<(&str, Check)> = [
         chunks::CHECKS,
         device::CHECKS,
+<<<<<<< HEAD
         frames::CHECKS,
+=======
+        filters::CHECKS,
+>>>>>>> filt
         lhb::CHECKS,
         lookups::CHECKS,
         merges::CHECKS,

@@ -1,6 +1,7 @@
 //! Layered hit buffers as a method: bits, bias against the reference tracer with equal bounces, and what the knobs do.
 
 mod cramped;
+mod filter;
 mod kept;
 
 use twinlight_backend_cpu::CpuBackend;
