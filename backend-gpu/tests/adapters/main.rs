@@ -4,11 +4,8 @@
 
 mod chunks;
 mod device;
-<<<<<<< HEAD
-mod frames;
-=======
 mod filters;
->>>>>>> filt
+mod frames;
 mod lhb;
 mod lookups;
 mod merges;
@@ -45,11 +42,8 @@ fn main() -> ExitCode {
     let checks: Vec<(&str, Check)> = [
         chunks::CHECKS,
         device::CHECKS,
-<<<<<<< HEAD
-        frames::CHECKS,
-=======
         filters::CHECKS,
->>>>>>> filt
+        frames::CHECKS,
         lhb::CHECKS,
         lookups::CHECKS,
         merges::CHECKS,

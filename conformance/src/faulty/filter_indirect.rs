@@ -72,10 +72,10 @@ struct Broken {
 impl Broken {
     fn filtered(mut self) -> Vec<RadianceTexel> {
         let mut texels = self.picture.input.clone();
-        for at in 0..texels.len() {
-            texels[at] = self.texel(at);
+        for (at, texel) in texels.iter_mut().enumerate() {
+            *texel = self.texel(at);
             if self.fault == Fault::FilterInPlace {
-                self.picture.input[at] = texels[at];
+                self.picture.input[at] = *texel;
             }
         }
         texels
@@ -130,8 +130,8 @@ impl Broken {
                 _ => q.albedo[c] >= LEAST_ALBEDO,
             };
             let irradiance = self.irradiance(at, c);
-            let counts = self.is_joined(p, q) && has_albedo;
-            if counts && !(self.fault == Fault::FilterDropsInfinite && !irradiance.is_finite()) {
+            let is_sound = self.fault != Fault::FilterDropsInfinite || irradiance.is_finite();
+            if self.is_joined(p, q) && has_albedo && is_sound {
                 light += weight * irradiance;
                 weights += weight;
             } else if self.fault == Fault::FilterMasks {

@@ -11,6 +11,7 @@ mod foreign;
 pub(crate) mod inputs;
 mod joins;
 mod laws;
+mod pairs;
 mod spread;
 mod values;
 
@@ -23,6 +24,7 @@ use twinlight_core::kernels::filter_indirect::RadianceTexel;
 /// Lists the trials.
 pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     cases::list(list);
+    pairs::list(list);
     joins::list(list);
     spread::list(list);
     values::list(list);
@@ -124,7 +126,7 @@ fn check_channel(evidence: &mut Evidence, at: usize, c: usize, got: f32, input: 
     }
 }
 
-/// η of a laws' interval: `terms` additions of f32, and the quotients and products around them, as the oracle counts them.
+/// Relative error of a mean of `terms` terms, none of them negative, as the oracle counts it.
 fn rounding(terms: usize) -> f64 {
     (terms as f64 + 5.0) * 1.001 / 8_388_608.0
 }
