@@ -237,8 +237,8 @@ fn centre_of<W: Width>(
     let widest = params.footprint * params.window as f32;
     let (mut normal, mut reach) = ([[0.0; LANES]; 3], [0.0; LANES]);
     for (lane, texel) in gbuffer.iter().enumerate() {
-        for c in 0..3 {
-            normal[c][lane] = texel.geometric_normal[c];
+        for (lanes, value) in normal.iter_mut().zip(texel.geometric_normal) {
+            lanes[lane] = value;
         }
         reach[lane] = widest * texel.depth;
     }

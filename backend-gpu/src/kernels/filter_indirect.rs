@@ -149,7 +149,7 @@ mod tests {
                 assert_eq!(part.start, end);
                 end = part.end;
                 let bound = neighbours(&params, pixels, &part);
-                assert!(bound.len() <= most && bound.start % CHUNK_GRAIN == 0);
+                assert!(bound.len() <= most && bound.start.is_multiple_of(CHUNK_GRAIN));
                 let (first, last) = (part.start / width as usize, (part.end - 1) / width as usize);
                 let reach = window as usize / 2;
                 assert!(bound.start <= first.saturating_sub(reach) * width as usize);

@@ -218,13 +218,14 @@ pub struct SlhbArgs {
     /// Whether the first vertex of each path gathers light along all directions
     #[arg(long, value_name = "WHAT", env = "TWINLIGHT_GATHER", default_value = "off")]
     pub gather: GatherName,
-    /// Give every tile of N x N pixels the same random numbers, 1 to 32: noise that --filter N averages best [default: 1, off]
-    #[arg(long, value_name = "N", env = "TWINLIGHT_INTERLEAVE", default_value_t = 1, hide_default_value = true,
-          value_parser = window())]
+    /// Give every tile of N x N pixels the same random numbers, 1 to 32, so that --filter N finds all of them; 1 is off
+    #[arg(long, value_name = "N", env = "TWINLIGHT_INTERLEAVE", default_value_t = 1, value_parser = window())]
     pub interleave: u32,
-    /// Average indirect light over N x N pixels that show the same diffuse surface, 1 to 32: less noise, blurred contact shadows
-    /// [default: 1, off]
-    #[arg(long, value_name = "N", env = "TWINLIGHT_FILTER", default_value_t = 1, hide_default_value = true, value_parser = window())]
+    /// Average indirect light over N x N pixels that show the same diffuse surface, 1 to 32; 1 is off
+    ///
+    /// Noise falls to about an Nth where so many are averaged, and contact shadows of indirect light are blurred over N pixels. Mirrors, glass
+    /// and glossy surfaces stay as they are, and so does direct light.
+    #[arg(long, value_name = "N", env = "TWINLIGHT_FILTER", default_value_t = 1, value_parser = window())]
     pub filter: u32,
 }
 

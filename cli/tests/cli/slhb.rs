@@ -1,5 +1,5 @@
 use crate::Folder;
-use twinlight::io::image::read_rgb;
+use twinlight::io::image::{LayeredImage, read_layers, read_rgb};
 use twinlight::scene::Limits;
 
 const SMALL: [&str; 8] = ["--size", "16x16", "--spp", "2", "--backend", "cpu", "--directions", "20"];
@@ -12,8 +12,8 @@ fn slhb_renders_and_says_what_it_built() {
     let sidecar: serde_json::Value = serde_json::from_slice(&folder.read("cornell.json")).unwrap();
     assert_eq!(sidecar["settings"]["method"], "slhb");
     let knobs = serde_json::json!({
-        "directions": "icosahedron:20", "size": 16, "layers": null, "cone": false, "gather": false,
-        "trace_misses": true
+        "directions": "icosahedron:20", "size": 16, "layers": null, "cone": false, "trace_misses": true,
+        "gather": false, "interleave": 1, "filter": 1
     });
     assert_eq!(sidecar["settings"]["slhb"], knobs);
     assert_eq!(sidecar["result"]["lhb_views"], 10);
@@ -21,6 +21,48 @@ fn slhb_renders_and_says_what_it_built() {
     assert!(sidecar["seconds"]["rasterize_lhb"].as_f64().unwrap() > 0.0);
     assert!(sidecar["seconds"]["walk_lhb"].as_f64().unwrap() > 0.0);
     assert!(sidecar["seconds"]["trace_paths"].is_null());
+    assert!(sidecar["seconds"]["filter_indirect"].is_null());
+}
+
+/// Every output shows filtered light, and none of them other direct light.
+#[test]
+fn filtered_light_is_in_every_picture() {
+    let folder = Folder::new();
+    let render = |name: &str, knobs: &[&str]| {
+        let (png, exr) = (format!("{name}.png"), format!("{name}.exr"));
+        let arguments = ["render", "builtin:cornell", "--method", "slhb", "--lhb-size", "16"];
+        folder.run(&[&arguments[..], &SMALL, &["-o", &png, "-o", &exr], knobs].concat()).ok();
+        let sidecar: serde_json::Value =
+            serde_json::from_slice(&folder.read(&format!("{name}.json"))).unwrap();
+        (folder.read(&png), read_layers(&folder.read(&exr), "exr", &Limits::default()).unwrap(), sidecar)
+    };
+    let noisy = render("noisy", &["--interleave", "4"]);
+    let filtered = render("filtered", &["--interleave", "4", "--filter", "4"]);
+    assert_eq!(filtered.2["settings"]["slhb"]["interleave"], 4);
+    assert_eq!(filtered.2["settings"]["slhb"]["filter"], 4);
+    assert!(filtered.2["seconds"]["filter_indirect"].as_f64().unwrap() > 0.0);
+    assert_ne!(filtered.0, noisy.0);
+    let layer = |image: &LayeredImage, name: &str| image.rgb(name).unwrap();
+    assert_eq!(layer(&filtered.1, "direct"), layer(&noisy.1, "direct"));
+    assert_ne!(layer(&filtered.1, "indirect"), layer(&noisy.1, "indirect"));
+    let parts = layer(&filtered.1, "direct").into_iter().zip(layer(&filtered.1, "indirect"));
+    let sum: Vec<_> = parts.map(|(direct, indirect)| [0, 1, 2].map(|c| direct[c] + indirect[c])).collect();
+    assert_eq!(layer(&filtered.1, ""), sum);
+}
+
+#[test]
+fn filters_are_of_the_method() {
+    let folder = Folder::new();
+    for flag in ["--interleave", "--filter"] {
+        let failed = folder.run(&["render", "builtin:cornell", flag, "4"]);
+        assert_eq!(failed.code, Some(2));
+        let text = format!("{flag} is for --method slhb, and this is reference");
+        assert!(failed.stderr.contains(&text), "{}", failed.stderr);
+        for wrong in ["0", "33"] {
+            let failed = folder.run(&["render", "builtin:cornell", "--method", "slhb", flag, wrong]);
+            assert!(failed.stderr.contains("not in 1..=32"), "{}", failed.stderr);
+        }
+    }
 }
 
 /// A scene file names the method too, and a scene without triangles has buffers without elements.

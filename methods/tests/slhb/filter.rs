@@ -29,7 +29,8 @@ fn mean(picture: &[[f32; 3]]) -> f64 {
     picture.iter().flatten().map(|&c| f64::from(c)).sum()
 }
 
-/// Noise of independent samples falls with the square root of their number: 16 pixels make a quarter of it, and the rest is bias.
+/// Noise of independent samples falls with the square root of their number: 16 pixels make a quarter of it, and the rest is bias. Measured
+/// 0.30, 0.25, 0.28 and 0.25.
 #[test]
 fn filtered_indirect_light_is_nearer_to_the_reference() {
     let room = Room::new("cornell", 2);
@@ -41,8 +42,7 @@ fn filtered_indirect_light_is_nearer_to_the_reference() {
     for (film, window) in [(&film, 4), (&film, 8), (&interleaved, 4), (&interleaved, 8)] {
         let filtered = room.filtered(film, window).unwrap();
         let left = error(&filtered.indirect, &truth) / noise;
-        println!("{window}: {noise} {left}");
-        assert!(left < 0.5, "{left} of {noise} is left by a window of {window}");
+        assert!(left < 0.4, "{left} of {noise} is left by a window of {window}");
         let ratio = mean(&filtered.indirect) / mean(&film.indirect());
         assert!((ratio - 1.0).abs() < 0.02, "{ratio} of the light is left by a window of {window}");
     }
