@@ -99,7 +99,7 @@ fn expect_twins(
 
 /// Lists that neither has, that one has and that both have, on both sides of the length that one invocation merges.
 fn merges(target: &Target) -> std::result::Result<(), Failed> {
-    for size in [0, 1, 33] {
+    for size in [1, 33] {
         let few = Lists::new(size, 1, |n| n % 3);
         let rare = Lists::new(size, 2, |n| if n % 11 == 0 { n / 11 % 40 } else { 0 });
         let none = Lists::new(size, 3, |_| 0);
