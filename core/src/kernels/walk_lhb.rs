@@ -22,12 +22,20 @@
 //!    lights, which a ray meets analytically, and the environment, which rays that leave the scene read along ω, keep the
 //!    balance heuristic.
 //!
-//! 4. *Interleaved sampling.* With [`WalkLhbBlock::interleave`] n > 1, the pixel (x, y) draws the numbers of the pixel (x mod n, y mod n): each
-//!    n × n tile holds the same patterns, whose noise [`crate::kernels::filter_indirect`] averages.
+//! 4. *Interleaved sampling.* With [`WalkLhbBlock::interleave`] n > 1, a path whose first vertex is diffuse (opaque, without a lobe) draws, for the
+//!    direction that it scatters along there and for all later vertices, the numbers of the pixel (x mod n, y mod n): each n × n tile
+//!    holds the same patterns, whose noise [`crate::kernels::filter_indirect`] averages. What that kernel leaves alone, direct light and
+//!    what other materials reflect, has numbers of its own: it would show the patterns.
 //! 5. *Gathering.* With [`GATHER`], light at the first vertex of a path, if that is opaque, is a sum over all D directions of the set instead
 //!    of an integral over drawn ones: sample s goes along direction s mod D, with the weight D·Ω·f·cos θ, Ω the solid angle that is nearer to
 //!    it than to others, and ends where that does not leave the surface. With a multiple of D samples each direction has the same
 //!    share. Its density in 3 is that of scattering, as if it had been drawn: the weights still add up to 1.
+//! 6. *Shadows.* With [`SHADOW_LOOKUPS`], the shadow rays of every vertex but the first are looked up as rays of 1 are, whatever [`TRACE_MISSES`]
+//!    says; with [`SHADOW_LOOKUPS_FIRST`] too, those of the first as well: the hit buffers are the shadow maps of all lights at once. With
+//!    L the distance to the sampled point of the light, the light is shadowed where the lookup finds a triangle which the ray meets
+//!    before [`crate::transport::light::SHADOW_REACH`]·L, or which the ray passes beside and whose nearest point to the lookup's line is
+//!    more than [`crate::transport::lhb::shadow_margin`] before L: what a pixel sees of the surface that carries the light is no
+//!    shadow. Light from infinitely far is shadowed by all that is found. Sphere lights shadow as they do otherwise.
 //!
 //! *Shapes.* The [`crate::kernels::rasterize_lhb::LhbBuffers`] of the set's lines, all layers, and the views they were made with;
 //! the mesh is the scene's ([`crate::lattice::LatticeMesh::of_scene`]), so that its triangles are the scene's slots; `film` as `trace_paths`.
@@ -55,6 +63,11 @@ pub const TRACE_MISSES: u32 = 2;
 /// [`WalkLhbBlock::flags`]: the first vertex gathers along all directions.
 pub const GATHER: u32 = 4;
 
+/// [`WalkLhbBlock::flags`]: shadow rays of every vertex but the first are looked up.
+pub const SHADOW_LOOKUPS: u32 = 8;
+/// [`WalkLhbBlock::flags`]: with [`SHADOW_LOOKUPS`], those of the first vertex too.
+pub const SHADOW_LOOKUPS_FIRST: u32 = 16;
+
 /// What lookups need to know of a scene and its buffers.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -75,7 +88,7 @@ pub struct WalkLhbBlock {
     pub subpixel_bits: u32,
     /// Cells per row of the directional map.
     pub map_resolution: u32,
-    /// Sum of [`CONE`], [`TRACE_MISSES`] and [`GATHER`], or 0.
+    /// Sum of [`CONE`], [`TRACE_MISSES`], [`GATHER`], [`SHADOW_LOOKUPS`] and [`SHADOW_LOOKUPS_FIRST`], or 0.
     pub flags: u32,
     /// Pixels per row and column of an interleaved pattern; 0 and 1 give every pixel numbers of its own.
     pub interleave: u32,
