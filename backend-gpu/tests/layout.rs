@@ -345,7 +345,7 @@ fn with_paths(mut structs: Vec<Layout>) -> Vec<Layout> {
             throughput,
             alive,
             direct,
-            padding_a,
+            numbers_of,
             indirect,
             padding_b,
         }),

@@ -50,3 +50,12 @@ fn strict_only<B: Backend>(cx: &Context<'_, B>) -> Check {
     }
     Err(Failure::Skip("bit equality is promised in strict mode only".into()))
 }
+
+/// Pictures of many samples. On a GPU they wait for full effort: at quick effort it is compared with the CPU, bit for bit in strict
+/// mode, and software adapters take minutes for what that comparison shows in seconds.
+fn pictures_wanted<B: Backend>(cx: &Context<'_, B>) -> Check {
+    if cx.full() || cx.backend.info().kind != "gpu" {
+        return Ok(());
+    }
+    Err(Failure::Skip("at quick effort GPUs are compared with the CPU instead".into()))
+}

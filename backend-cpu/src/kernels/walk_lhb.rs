@@ -21,7 +21,7 @@ use twinlight_core::kernels::trace_paths::FilmTexel;
 use twinlight_core::kernels::walk_lhb::{CONE, GATHER, TRACE_MISSES, WalkLhbParams};
 use twinlight_core::math::hash::mix_pair;
 use twinlight_core::math::octahedral::nearest_direction;
-use twinlight_core::scene::NONE;
+use twinlight_core::scene::{MATERIAL_OPAQUE, NONE};
 use twinlight_core::transport::SceneView;
 use twinlight_core::transport::lhb::{lhb_hit, lhb_query, lhb_refined, ray_direction};
 use twinlight_core::transport::light::FAR;
@@ -45,7 +45,8 @@ pub(crate) struct Lookups<'a> {
 #[derive(Debug, Clone, Copy)]
 struct Walker {
     path: Path,
-    pixel: u32,
+    /// The pixel whose numbers it draws.
+    numbers_of: u32,
     sample: u32,
     /// Unit normal of what it leaves, on its side.
     normal: Vec3,
@@ -154,25 +155,33 @@ impl<W: Width> Wave<'_, W> {
                 self.step(walker, met);
             }
         }
-        for walker in &walkers {
-            let texel = &mut texels[(walker.pixel - first_pixel) as usize];
-            add_sample(texel, walker.path.light, &self.params.call);
+        for walkers in walkers.chunks_exact(texels.len()) {
+            for (texel, walker) in texels.iter_mut().zip(walkers) {
+                add_sample(texel, walker.path.light, &self.params.call);
+            }
         }
     }
 
     fn sampler(&self, pixel: u32, sample: u32) -> Sampler {
         let call = &self.params.call;
-        Sampler { kind: call.sampler, stream: mix_pair(call.seed, self.pattern_pixel(pixel)), sample }
+        Sampler { kind: call.sampler, stream: mix_pair(call.seed, pixel), sample }
     }
 
-    /// The pixel whose numbers a pixel draws.
+    /// The pixel of the first tile whose numbers a pixel draws from its first vertex on.
     #[inline(always)]
     fn pattern_pixel(&self, pixel: u32) -> u32 {
         let (n, width) = (self.params.lookup.interleave, self.params.call.width);
-        if n <= 1 {
-            return pixel;
-        }
         ((pixel / width) % n) * width + (pixel % width) % n
+    }
+
+    /// Whether a path goes on from a triangle, its first vertex, by the numbers of another pixel.
+    #[inline(always)]
+    fn is_interleaved(&self, slot: u32) -> bool {
+        if self.params.lookup.interleave <= 1 || slot == NONE {
+            return false;
+        }
+        let material = &self.scene.materials[self.scene.triangles[slot as usize].material as usize];
+        material.kind == MATERIAL_OPAQUE && material.specular_f90 == 0.0
     }
 
     // [1] sample: a point of the pixel
@@ -180,15 +189,20 @@ impl<W: Width> Wave<'_, W> {
     fn begin(&self, pixel: u32, sample: u32) -> Walker {
         let sampler = self.sampler(pixel, sample);
         let path = start(self.tracer.1, &self.params.call, pixel, &sampler);
-        Walker { path, pixel, sample, normal: Vec3::ZERO, leaves: 0, ray: TRACED }
+        Walker { path, numbers_of: pixel, sample, normal: Vec3::ZERO, leaves: 0, ray: TRACED }
     }
 
     /// What shines on what the ray meets, and the next ray.
     #[inline(always)]
     fn step(&self, walker: &mut Walker, met: &Met) {
-        let sampler = self.sampler(walker.pixel, walker.sample);
+        let sampler = self.sampler(walker.numbers_of, walker.sample);
         let base = Sampler::first_pair(walker.path.vertices);
-        let numbers = sampler.vertex(self.tracer.1, base);
+        let mut numbers = sampler.vertex(self.tracer.1, base);
+        if walker.path.vertices == 0 && self.is_interleaved(met.slot) {
+            walker.numbers_of = self.pattern_pixel(walker.numbers_of);
+            let pattern = self.sampler(walker.numbers_of, walker.sample);
+            numbers.direction = pattern.vertex(self.tracer.1, base).direction;
+        }
         let (scene, call) = (&self.scene, &self.params.call);
         let emitters = Emitters::Denser;
         // [3] direct light

@@ -33,8 +33,8 @@ pub struct PathState {
     pub alive: u32,
     /// Light scattered at most once.
     pub direct: [f32; 3],
-    /// Unused, 0.
-    pub padding_a: u32,
+    /// The pixel whose numbers it draws.
+    pub numbers_of: u32,
     /// Light scattered more often.
     pub indirect: [f32; 3],
     /// Unused, 0.

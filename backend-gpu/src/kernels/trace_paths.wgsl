@@ -42,7 +42,8 @@ fn trace_segment(
     }
     let pixel = params.call.pixel_begin + index % params.call.pixel_count;
     let sample = params.call.sample_begin + index / params.call.pixel_count;
-    let draws = Draws(mix_pair(params.call.seed, pixel), sample);
+    let stream = mix_pair(params.call.seed, pixel);
+    let draws = Draws(stream, stream, sample);
     var path: PathState;
     if params.segment == 0u {
         // [1] sample: a point of the pixel

@@ -87,14 +87,14 @@ fn extend_paths(
     }
     let pixel = params.call.pixel_begin + index % params.call.pixel_count;
     let sample = params.call.sample_begin + index / params.call.pixel_count;
-    let draws = Draws(mix_pair(params.call.seed, pattern_pixel(pixel)), sample);
     var path: PathState;
     var hit = SlotHit(FAR, 0.0f, 0.0f, NONE);
     var is_traced = true;
     var aim = Aim(false, vec3<f32>(0.0f), 0.0f);
     if params.segment == 0u {
         // [1] sample: a point of the pixel
-        path = start_path(draws, pixel);
+        let stream = mix_pair(params.call.seed, pixel);
+        path = start_path(Draws(stream, stream, sample), pixel);
         // Left here by aim_paths.
         aim = Aim((params.lookup.flags & GATHER) != 0u, paths[index].normal, paths[index].t);
     } else {
@@ -108,6 +108,11 @@ fn extend_paths(
     if is_traced {
         hit = closest(path.origin, path.direction, 0.0f, FAR);
     }
+    let stream = mix_pair(params.call.seed, path.numbers_of);
+    if path.vertices == 0u && is_interleaved(hit.slot) {
+        path.numbers_of = pattern_pixel(path.numbers_of);
+    }
+    let draws = Draws(stream, mix_pair(params.call.seed, path.numbers_of), sample);
     // [3] direct light
     // [4] scatter
     // [5] roulette
@@ -124,12 +129,18 @@ fn extend_paths(
     }
 }
 
-// The pixel whose numbers a pixel draws.
+// Whether a path goes on from a triangle, its first vertex, by the numbers of another pixel.
+fn is_interleaved(slot: u32) -> bool {
+    if params.lookup.interleave <= 1u || slot == NONE {
+        return false;
+    }
+    let material = materials[triangles[slot].material];
+    return material.kind == MATERIAL_OPAQUE && material.specular_f90 == 0.0f;
+}
+
+// The pixel of the first tile whose numbers a pixel draws from its first vertex on.
 fn pattern_pixel(pixel: u32) -> u32 {
     let n = params.lookup.interleave;
-    if n <= 1u {
-        return pixel;
-    }
     let width = params.call.width;
     return ((pixel / width) % n) * width + (pixel % width) % n;
 }

@@ -88,7 +88,7 @@ fn lhb_query(
 
 // How far a pixel's line may be from a point that is looked up there, steps.
 fn aside_at_most(block: WalkLhbBlock) -> f32 {
-    return ACROSS * HALF_DIAGONAL / f32(block.size) + ROUNDING;
+    return ACROSS * HALF_DIAGONAL / f32(block.size) + ROUNDING * block.row_scale;
 }
 
 // z of a lookup's position, as elements count it.

@@ -36,7 +36,8 @@ struct PathState {
     alive: u32,
     // Light scattered at most once.
     direct: vec3<f32>,
-    padding_a: u32,
+    // The pixel whose numbers it draws.
+    numbers_of: u32,
     // Light scattered more often.
     indirect: vec3<f32>,
     padding_b: u32,
@@ -55,6 +56,8 @@ struct FilmTexel {
 // What the vertices of a path share.
 struct Draws {
     stream: u32,
+    // That of the direction it scatters along.
+    direction_stream: u32,
     sample: u32,
 }
 
@@ -73,7 +76,7 @@ fn start_path(draws: Draws, pixel: u32) -> PathState {
     let direction = camera_direction(params.call.camera, x, y);
     let zero = vec3<f32>(0.0f);
     let one = vec3<f32>(1.0f);
-    return PathState(params.call.camera.position, 0.0f, direction, 0u, one, 1u, zero, 0u, zero, 0u);
+    return PathState(params.call.camera.position, 0.0f, direction, 0u, one, 1u, zero, pixel, zero, 0u);
 }
 
 // The surface that a path goes on from, if it does.
@@ -135,7 +138,7 @@ fn visit(path: ptr<function, PathState>, hit: SlotHit, draws: Draws, aim: Aim) -
     if aim.is_given && material.kind == MATERIAL_OPAQUE {
         scattered = aimed(material, surface.albedo, frame, surface.shading_normal, wo, aim);
     } else {
-        let uv = draw_pair(draws, base);
+        let uv = draw_pair(Draws(draws.direction_stream, draws.direction_stream, draws.sample), base);
         scattered = scatter(material, surface, wo, to_unit(choice.y), to_unit(uv.x), to_unit(uv.y));
     }
     if all(scattered.direction == vec3<f32>(0.0f)) {

@@ -14,9 +14,10 @@ mod walked;
 
 use super::trace_paths::film::Mean;
 use super::trace_paths::params;
+use crate::kernels::pictures_wanted;
 use crate::oracle::walk_lhb::{self as oracle, Looked};
 use crate::scenes::compiled;
-use crate::trial::{Check, Context, Failure, Listing, ensure, list_trials};
+use crate::trial::{Check, Context, Listing, ensure, list_trials};
 use twinlight_core::Backend;
 use twinlight_methods::slhb::LookupSettings;
 pub(crate) use walked::{Prepared, walked};
@@ -38,15 +39,6 @@ const SIGMAS: f64 = 4.5;
 /// Largest relative standard error of a picture's mean: lamps that are sampled by area are noisy in corners, and a lobe lost or
 /// counted twice shows nevertheless. Floors, which are a tenth as noisy, show 3 %.
 const POWER: f64 = 0.015;
-
-/// Pictures of many samples. On a GPU they wait for full effort: at quick effort it is compared with the CPU, bit for bit in strict
-/// mode, and software adapters take minutes for what that comparison shows in seconds.
-fn pictures_wanted<B: Backend>(cx: &Context<'_, B>) -> Check {
-    if cx.full() || cx.backend.info().kind != "gpu" {
-        return Ok(());
-    }
-    Err(Failure::Skip("at quick effort GPUs are compared with the CPU instead".into()))
-}
 
 fn known<B: Backend>(cx: &Context<'_, B>, cases: &[Looked]) -> Check {
     pictures_wanted(cx)?;

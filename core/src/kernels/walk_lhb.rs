@@ -24,8 +24,9 @@
 //!
 //! 4. *Interleaved sampling.* With [`WalkLhbBlock::interleave`] n > 1, a path whose first vertex is diffuse (opaque, without a lobe) draws, for the
 //!    direction that it scatters along there and for all later vertices, the numbers of the pixel (x mod n, y mod n): each n × n tile
-//!    holds the same patterns, whose noise [`crate::kernels::filter_indirect`] averages. What that kernel leaves alone, direct light and
-//!    what other materials reflect, has numbers of its own: it would show the patterns.
+//!    holds the same patterns, whose noise [`crate::kernels::filter_indirect`] averages. What that kernel leaves alone, sampled
+//!    lights and what other materials reflect, has numbers of its own: it would show the patterns. (Light that a path's first scattered
+//!    ray meets itself still does.)
 //! 5. *Gathering.* With [`GATHER`], light at the first vertex of a path, if that is opaque, is a sum over all D directions of the set instead
 //!    of an integral over drawn ones: sample s goes along direction s mod D, with the weight D·Ω·f·cos θ, Ω the solid angle that is nearer to
 //!    it than to others, and ends where that does not leave the surface. With a multiple of D samples each direction has the same

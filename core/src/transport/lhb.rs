@@ -22,8 +22,9 @@ pub const COARSE: f32 = 16_384.0;
 pub const ACROSS: f32 = 65_536.0;
 /// √½ of a pixel is from its centre to its corner.
 pub const HALF_DIAGONAL: f32 = 0.707_106_77;
-/// Steps by which rounding may put a line farther aside: of the position to the lattice, √3/2; of it on the screen, to units of two
-/// steps in two axes, √2; and of the triangle's vertices there, √2.
+/// Steps by which rounding may put a line farther aside, where a view's size is a power of two: of the position to the lattice, √3/2; of
+/// it on the screen, to units of two steps in two axes, √2; and of the triangle's vertices there, √2. At other sizes units are
+/// larger by [`WalkLhbBlock::row_scale`].
 pub const ROUNDING: f32 = 4.0;
 /// Slope that the window allows for at least: what other surfaces may have.
 pub const LEAST_SLOPE: f32 = 4.0;
@@ -107,7 +108,7 @@ pub fn lhb_query(
 /// How far a pixel's line may be from a point that is looked up there, steps.
 #[inline(always)]
 fn aside_at_most(block: &WalkLhbBlock) -> f32 {
-    ACROSS * HALF_DIAGONAL / block.size as f32 + ROUNDING
+    ACROSS * HALF_DIAGONAL / block.size as f32 + ROUNDING * block.row_scale
 }
 
 /// z of a lookup's position, as elements count it.
@@ -238,4 +239,52 @@ fn not_negative(x: f32) -> f32 {
 #[inline(always)]
 fn cross(a: Vec3, b: Vec3) -> Vec3 {
     Vec3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lattice::{REACH, subpixel_bits};
+    use crate::math::hash::{mix_pair, to_unit};
+    use glam::DVec3;
+
+    /// How far from its place on the screen a lattice point is put, steps.
+    fn put_off(view: &View, size: u32, point: IVec3) -> f64 {
+        let middle = ((size << (subpixel_bits(size) + 14)) + (1 << 14)) as i32;
+        let unit = 65_536.0 / f64::from(size << subpixel_bits(size));
+        let off = [view.right, view.down].map(|[a, b, c, _]| {
+            let exact = a * point.x + b * point.y + c * point.z + middle;
+            // To the nearest: half a unit was added before the bits were cut off.
+            (f64::from(exact) - 16_384.0) / 32_768.0 - f64::from(exact >> 15)
+        });
+        unit * (off[0] * off[0] + off[1] * off[1]).sqrt()
+    }
+
+    fn random(seed: u32, index: u32) -> DVec3 {
+        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(to_unit(mix_pair(seed, 3 * index + axis))));
+        (DVec3::new(x, y, z) - 0.5) * 2.0
+    }
+
+    /// The three roundings at their worst among many are within [`ROUNDING`], and come near to it: less would not do.
+    #[test]
+    fn roundings_add_up_to_no_more() {
+        for size in [1_u32, 100, 128, 513, 1000, 1024] {
+            let scale = f64::from(size.next_power_of_two()) / f64::from(size);
+            let (mut snapped, mut drawn) = (0.0_f64, 0.0_f64);
+            for index in 0..20_000 {
+                let exact = random(size, index) * (0.57 * f64::from(REACH));
+                let point = IVec3::new(
+                    lattice_coordinate(exact.x as f32),
+                    lattice_coordinate(exact.y as f32),
+                    lattice_coordinate(exact.z as f32),
+                );
+                snapped = snapped.max(point.as_dvec3().distance(exact));
+                let view = View::along(random(size + 1, index), size).expect("a direction");
+                drawn = drawn.max(put_off(&view, size, point));
+            }
+            let (worst, allowed) = (snapped + 2.0 * drawn, f64::from(ROUNDING) * scale);
+            assert!(worst <= allowed, "{worst} steps at size {size}, {allowed} allowed");
+            assert!(worst > 0.8 * allowed, "{worst} steps at size {size}, {allowed} allowed");
+        }
+    }
 }

@@ -12,7 +12,7 @@ use crate::trial::{Check, Context, Failure, Listing, ensure, list_trials};
 use twinlight_core::Backend;
 use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsParams};
 use twinlight_core::kernels::walk_lhb::{WalkLhbBlock, WalkLhbParams};
-use twinlight_core::scene::CompiledScene;
+use twinlight_core::scene::{CompiledScene, Light, Scene};
 use twinlight_fixtures::scenes;
 
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
@@ -164,20 +164,45 @@ fn bounces_only_add<B: Backend>(cx: &Context<'_, B>) -> Check {
     Ok(())
 }
 
-/// Interleaved: the first tile has the film of its pixels' own numbers, and others have that of other numbers.
+/// The Cornell box by the light of a point.
+fn point_lit(glossy: bool) -> Scene {
+    let mut scene = scenes::cornell();
+    for material in &mut scene.materials {
+        material.emission = [0.0; 3];
+        (material.specular_f0, material.roughness) = ([if glossy { 0.2 } else { 0.0 }; 3], 0.4);
+    }
+    scene.lights.push(Light::Point { position: [0.1, 0.6, 0.2], intensity: [0.5; 3] });
+    scene
+}
+
+/// Interleaved: the first tile has the film of its pixels' own numbers, others have sampled lights by their own and the rest by
+/// other numbers, and where nothing is diffuse nothing changes.
 fn patterns_repeat<B: Backend>(cx: &Context<'_, B>) -> Check {
-    let (_, call, prepared) = mixed(cx)?;
-    let own = walked(cx.backend, &prepared, &call)?;
-    let (width, tile) = (call.width as usize, 4);
-    let lookup = WalkLhbBlock { interleave: tile as u32, ..prepared.buffers.lookup };
-    let mut film = cx.backend.zeroed::<FilmTexel>(own.len())?;
-    prepared.walk_as(cx.backend, &WalkLhbParams { call, lookup }, &mut film)?;
-    let film = cx.backend.download(&film)?;
-    let is_first = |i: usize| i % width < tile && i / width < tile;
-    let kept = |inside: bool| (0..own.len()).filter(|&i| is_first(i) == inside && film[i] == own[i]).count();
-    ensure(kept(true) == tile * tile, || {
-        format!("{} pixels of the first tile keep their light", kept(true))
-    })?;
-    // Where nothing scatters, numbers decide nothing.
-    ensure(kept(false) * 4 < own.len(), || format!("{} other pixels keep their light", kept(false)))
+    let (width, tile) = (SIZE.0 as usize, 4);
+    for glossy in [false, true] {
+        let scene = point_lit(glossy);
+        let compiled = compiled(&scene);
+        let call = params(&scene, &compiled, SIZE, 7, Some(3))?;
+        let prepared = Prepared::new(cx.backend, &compiled, "icosahedron:80", 24)?;
+        let own = walked(cx.backend, &prepared, &call)?;
+        let lookup = WalkLhbBlock { interleave: tile as u32, ..prepared.buffers.lookup };
+        let mut film = cx.backend.zeroed::<FilmTexel>(own.len())?;
+        prepared.walk_as(cx.backend, &WalkLhbParams { call, lookup }, &mut film)?;
+        let film = cx.backend.download(&film)?;
+        if glossy {
+            exact(cx, "film without diffuse surfaces", &film, &own, LINE)?;
+            continue;
+        }
+        let direct = |film: &[FilmTexel]| film.iter().flat_map(|t| t.direct.map(wide)).collect::<Vec<u64>>();
+        exact(cx, "direct sums", &direct(&film), &direct(&own), Shape::Line)?;
+        let is_first = |i: usize| i % width < tile && i / width < tile;
+        let kept =
+            |inside: bool| (0..own.len()).filter(|&i| is_first(i) == inside && film[i] == own[i]).count();
+        ensure(kept(true) == tile * tile, || {
+            format!("{} pixels of the first tile keep their light", kept(true))
+        })?;
+        // Where nothing is met, numbers decide nothing.
+        ensure(kept(false) * 4 < own.len(), || format!("{} other pixels keep their light", kept(false)))?;
+    }
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! Against the reference, whose rays are traced: a bias that is stated, and falls.
 
 use super::{Prepared, walked};
+use crate::kernels::pictures_wanted;
 use crate::kernels::trace_paths::film::wide;
 use crate::kernels::trace_paths::{params, traced};
 use crate::scenes::compiled;
@@ -62,7 +63,7 @@ fn samples<B>(cx: &Context<'_, B>) -> u32 {
 /// From 20 directions of 32² to 320 of 64². With 256 samples the blocks' error falls from 17 % to 3.7 %, 1.3 % of which is noise; the
 /// picture's light is then 0.5 % too much.
 fn error_falls_with_resolution<B: Backend>(cx: &Context<'_, B>) -> Check {
-    super::pictures_wanted(cx)?;
+    pictures_wanted(cx)?;
     let (compiled, call) = scene_and_call("cornell", samples(cx))?;
     let reference = Picture::of(&traced(cx.backend, &compiled, &call)?);
     let mut errors = Vec::new();
@@ -81,7 +82,7 @@ fn error_falls_with_resolution<B: Backend>(cx: &Context<'_, B>) -> Check {
 
 /// Without the cone approximation light bands: on glossy plates before lamps, four times the error.
 fn the_cone_smooths<B: Backend>(cx: &Context<'_, B>) -> Check {
-    super::pictures_wanted(cx)?;
+    pictures_wanted(cx)?;
     let (compiled, call) = scene_and_call("veach", samples(cx))?;
     let reference = Picture::of(&traced(cx.backend, &compiled, &call)?);
     let directions: DirectionSet = "icosahedron:80".parse()?;
@@ -100,7 +101,7 @@ fn the_cone_smooths<B: Backend>(cx: &Context<'_, B>) -> Check {
 /// In a closed room every lookup that finds nothing is wrong. Traced, such rays bring the light back; left alone, a coarse set
 /// loses several percent of it.
 fn misses_are_traced<B: Backend>(cx: &Context<'_, B>) -> Check {
-    super::pictures_wanted(cx)?;
+    pictures_wanted(cx)?;
     let (compiled, call) = scene_and_call("furnace", samples(cx))?;
     let reference = Picture::of(&traced(cx.backend, &compiled, &call)?).light;
     let mut ratios = Vec::new();
@@ -118,7 +119,7 @@ fn misses_are_traced<B: Backend>(cx: &Context<'_, B>) -> Check {
 /// Lamps among other bodies, some of them nearly touching: sampled alone, their light is noise without bound, and 64 samples show 2.9 times
 /// what there is. Met by rays where those are denser, 256 samples measure 1.005.
 fn lamps_close_by<B: Backend>(cx: &Context<'_, B>) -> Check {
-    super::pictures_wanted(cx)?;
+    pictures_wanted(cx)?;
     let (compiled, call) = scene_and_call("materials", samples(cx))?;
     let reference = Picture::of(&traced(cx.backend, &compiled, &call)?).light;
     let settings = LookupSettings { size: 64, ..LookupSettings::default() };
@@ -130,7 +131,7 @@ fn lamps_close_by<B: Backend>(cx: &Context<'_, B>) -> Check {
 /// All directions of the set instead of as many drawn ones: the same light. Where the lamp is a point, numbers choose points of pixels alone,
 /// which decides little for most of them. Measured: 0.992 of the light, 0.46 of the noise.
 fn gathered_light<B: Backend>(cx: &Context<'_, B>) -> Check {
-    super::pictures_wanted(cx)?;
+    pictures_wanted(cx)?;
     let mut scene = cornell();
     scene.materials.iter_mut().for_each(|material| material.emission = [0.0; 3]);
     scene.lights.push(Light::Point { position: [278.0, 400.0, 280.0], intensity: [1e6; 3] });
@@ -163,7 +164,7 @@ fn median_difference(a: &[FilmTexel], b: &[FilmTexel]) -> f64 {
 
 /// Rays are looked up: with eight directions the picture is another one than the reference, by more than its noise.
 fn lookups_are_looked_up<B: Backend>(cx: &Context<'_, B>) -> Check {
-    super::pictures_wanted(cx)?;
+    pictures_wanted(cx)?;
     let (compiled, call) = scene_and_call("cornell", 32)?;
     let reference = Picture::of(&traced(cx.backend, &compiled, &call)?);
     let prepared = Prepared::new(cx.backend, &compiled, "octahedron:8", 16)?;
