@@ -26,7 +26,8 @@
 //! *Edge cases.* n = 1 copies, but for the rounding of 4: p is its only neighbour. A p that meets no limit even beside itself (its depth is
 //! negative, or no number) is not joined with itself; channels for which no neighbour counts are copied. No pixels: nothing. Radiance that is
 //! not finite spreads to joined neighbours, and reaches no others.
-//! *Error.* A bias of the order of the second derivative of irradiance over the window; contact shadows are blurred over it. Noise falls with the
+//! *Error.* A bias of the order of the second derivative of irradiance over the window; contact shadows are blurred over it. A pixel that
+//! shows two surfaces counts as the one at its centre, so that silhouettes bleed by up to half a window. Noise falls with the
 //! number of joined neighbours.
 //! *Source.* Keller, "Instant radiosity", 1997 and Keller and Heidrich, "Interleaved sampling", 2001 (the discontinuity buffer); Yu, layered
 //! hit buffers, which removes structured noise so.

@@ -81,37 +81,37 @@ pub(crate) fn any_split<B: Backend>(
 }
 
 /// A film that already holds sums just below 2³², 2⁶³ and the largest count gets the new ones on top, with carry.
-fn sums_carry_and_accumulate<B: Backend>(cx: &Context<'_, B>) -> Check {
-    let (scene, compiled) = mixed();
-    let params = sobol(&scene, &compiled, 3)?;
-    let fresh = traced(cx.backend, &compiled, &params)?;
+pub(crate) fn any_start<B: Backend>(
+    cx: &Context<'_, B>,
+    fresh: &[FilmTexel],
+    add: impl Fn(&mut B::Buffer<FilmTexel>) -> twinlight_core::Result<()>,
+) -> Check {
     for start in [0xffff_ffff_u64, 0x7fff_ffff_ffff_0000, 5] {
-        let full = [words(start); 3];
-        let held = FilmTexel {
-            direct: full,
-            indirect: full,
-            luminance_squared: words(start),
-            samples: 9,
-            rejected: 0,
-        };
-        let resident = cx.backend.upload_scene(&compiled)?;
+        let [direct, indirect] = [[words(start); 3]; 2];
+        let held = FilmTexel { direct, indirect, luminance_squared: words(start), samples: 9, rejected: 0 };
         let mut film = cx.backend.upload(&vec![held; fresh.len()])?;
-        cx.backend.trace_paths(&resident, &params, &mut film)?;
+        add(&mut film)?;
         let plus = |w: [u32; 2]| words(wide(w) + start);
-        let want: Vec<FilmTexel> = fresh
-            .iter()
-            .map(|t| FilmTexel {
-                direct: t.direct.map(plus),
-                indirect: t.indirect.map(plus),
-                luminance_squared: plus(t.luminance_squared),
-                samples: t.samples + 9,
-                rejected: t.rejected,
-            })
-            .collect();
+        let on_top = |t: &FilmTexel| FilmTexel {
+            direct: t.direct.map(plus),
+            indirect: t.indirect.map(plus),
+            luminance_squared: plus(t.luminance_squared),
+            samples: t.samples + 9,
+            rejected: t.rejected,
+        };
+        let want: Vec<FilmTexel> = fresh.iter().map(on_top).collect();
         exact(cx, "film", &cx.backend.download(&film)?, &want, LINE)
             .map_err(|f| f.within(&format!("from {start:#x}")))?;
     }
     Ok(())
+}
+
+fn sums_carry_and_accumulate<B: Backend>(cx: &Context<'_, B>) -> Check {
+    let (scene, compiled) = mixed();
+    let params = sobol(&scene, &compiled, 3)?;
+    let fresh = traced(cx.backend, &compiled, &params)?;
+    let resident = cx.backend.upload_scene(&compiled)?;
+    any_start(cx, &fresh, |film| cx.backend.trace_paths(&resident, &params, film))
 }
 
 fn repeated<B: Backend>(cx: &Context<'_, B>) -> Check {

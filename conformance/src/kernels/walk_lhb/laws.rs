@@ -3,8 +3,8 @@
 use super::{Prepared, walked};
 use crate::compare::{Shape, exact};
 use crate::kernels::strict_only;
-use crate::kernels::trace_paths::film::{wide, words};
-use crate::kernels::trace_paths::laws::any_split;
+use crate::kernels::trace_paths::film::wide;
+use crate::kernels::trace_paths::laws::{any_split, any_start};
 use crate::kernels::trace_paths::{params, traced};
 use crate::oracle::trace_paths as known;
 use crate::scenes::compiled;
@@ -85,28 +85,9 @@ fn any_split_gives_the_same_film<B: Backend>(cx: &Context<'_, B>) -> Check {
     any_split(cx, &whole, &want, |part, film| prepared.walk(cx.backend, part, film))
 }
 
-/// A film that already holds sums just below 2³², 2⁶³ and the largest count gets the new ones on top, with carry.
 fn sums_carry_and_accumulate<B: Backend>(cx: &Context<'_, B>) -> Check {
     let (_, call, prepared) = mixed(cx)?;
-    let fresh = walked(cx.backend, &prepared, &call)?;
-    for start in [0xffff_ffff_u64, 0x7fff_ffff_ffff_0000, 5] {
-        let [direct, indirect] = [[words(start); 3]; 2];
-        let held = FilmTexel { direct, indirect, luminance_squared: words(start), samples: 9, rejected: 0 };
-        let mut film = cx.backend.upload(&vec![held; fresh.len()])?;
-        prepared.walk(cx.backend, &call, &mut film)?;
-        let plus = |w: [u32; 2]| words(wide(w) + start);
-        let on_top = |t: &FilmTexel| FilmTexel {
-            direct: t.direct.map(plus),
-            indirect: t.indirect.map(plus),
-            luminance_squared: plus(t.luminance_squared),
-            samples: t.samples + 9,
-            rejected: t.rejected,
-        };
-        let want: Vec<FilmTexel> = fresh.iter().map(on_top).collect();
-        exact(cx, "film", &cx.backend.download(&film)?, &want, LINE)
-            .map_err(|f| f.within(&format!("from {start:#x}")))?;
-    }
-    Ok(())
+    any_start(cx, &walked(cx.backend, &prepared, &call)?, |film| prepared.walk(cx.backend, &call, film))
 }
 
 fn repeated<B: Backend>(cx: &Context<'_, B>) -> Check {
