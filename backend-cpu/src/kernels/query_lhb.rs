@@ -7,7 +7,8 @@
 //! core's cache.
 
 use crate::parallel::fill_chunks;
-use crate::simd::{Isa, Kernel, Width, prefetch};
+use crate::simd::{Isa, Kernel, Width, prefetch, prefetch_item};
+use bytemuck::Zeroable;
 use twinlight_core::kernels::query_lhb::{CLEARANCE, LhbQuery, NO_ELEMENT};
 use twinlight_core::kernels::rasterize_lhb::LhbElement;
 use twinlight_core::lattice::{LatticePlane, View};
@@ -17,8 +18,8 @@ mod project;
 #[cfg(test)]
 mod tests;
 
-use front::{Verdict, judge};
-use project::project;
+use front::judge;
+use project::{LANES, Places, project};
 
 /// Layered hit buffers and what queries need beside them.
 #[derive(Debug, Clone, Copy)]
@@ -79,47 +80,60 @@ struct Span {
     end: u32,
 }
 
-/// The elements that at most [`BATCH`] queries meet, in steps for all of them: each waits for memory, and waits of independent
-/// reads overlap. Few queries need more than the first elements of their list: they are left for the end, so that the others
-/// take the same way and no processor has to guess it.
+/// The elements that at most [`BATCH`] queries meet.
 #[inline(always)]
 pub(crate) fn look_up<W: Width>(width: W, lhb: &LhbData<'_>, queries: &[LhbQuery], hits: &mut [LhbElement]) {
-    // [1] project
-    let places = project(width, lhb, queries);
-    for &list in &places.lists[..queries.len()] {
-        if let Some(offset) = lhb.offsets.get(list as usize) {
-            prefetch(offset);
-        }
+    if let (Ok(queries), Ok(hits)) = (queries.try_into(), (&mut *hits).try_into()) {
+        return look_up_batch(width, lhb, queries, hits);
     }
+    let mut padded = [LhbQuery::zeroed(); BATCH];
+    padded[..queries.len()].copy_from_slice(queries);
+    let mut found = [NOTHING; BATCH];
+    look_up_batch(width, lhb, &padded, &mut found);
+    hits.copy_from_slice(&found[..hits.len()]);
+}
+
+/// In steps for all of them: each waits for memory, and waits of independent reads overlap. Few queries need more than the first
+/// elements of their list: they are left for the end, so that the others take the same way and no processor has to guess it.
+#[inline(always)]
+fn look_up_batch<W: Width>(
+    width: W,
+    lhb: &LhbData<'_>,
+    queries: &[LhbQuery; BATCH],
+    hits: &mut [LhbElement; BATCH],
+) {
+    // [1] project
+    let mut places = Places::default();
+    project(width, lhb, queries, &mut places);
     let mut spans = [Span::default(); BATCH];
-    for (span, &list) in spans.iter_mut().zip(&places.lists).take(queries.len()) {
-        if let Some(&[begin, end]) = lhb.offsets.get(list as usize..).and_then(|rest| rest.first_chunk()) {
+    for (span, &list) in spans.iter_mut().zip(&places.lists) {
+        let list = list as usize;
+        if let Some(&[begin, end]) = lhb.offsets.get(list..list + 2) {
             *span = Span { begin, end };
-            if let Some(element) = lhb.elements.get(begin as usize) {
-                prefetch(element);
-            }
+            prefetch_item(lhb.elements, begin as usize);
         }
     }
     // [2] walk the list
     let mut pending = [0_u8; BATCH];
     let mut count = 0;
-    for (i, (query, hit)) in queries.iter().zip(&mut *hits).enumerate() {
-        let (span, depth) = (spans[i], places.depths[i]);
-        let verdict = if query.ray & 1 == 0 {
-            judge::<W, 0>(width, lhb, query, depth, span)
-        } else {
-            judge::<W, 1>(width, lhb, query, depth, span)
-        };
-        *hit = if let Verdict::Meets(element) = verdict { element } else { NOTHING };
-        if let Verdict::PlaneOf(surface) = verdict
-            && let Some(plane) = lhb.planes.get((surface >> 1) as usize)
-        {
-            prefetch(plane);
+    for (group, reversed) in places.reversed.into_iter().enumerate() {
+        for i in group * LANES..(group + 1) * LANES {
+            let reversed = reversed.unwrap_or(queries[i].ray & 1);
+            let (element, is_pending) = if reversed == 0 {
+                judge::<W, 0>(width, lhb, &queries[i], places.depths[i], spans[i])
+            } else {
+                judge::<W, 1>(width, lhb, &queries[i], places.depths[i], spans[i])
+            };
+            hits[i] = element;
+            pending[count] = i as u8;
+            count += usize::from(is_pending);
         }
-        pending[count] = i as u8;
-        count += usize::from(matches!(verdict, Verdict::PlaneOf(_) | Verdict::Later));
     }
-    for &i in &pending[..count] {
+    let pending = &pending[..count];
+    for &i in pending {
+        prefetch_item(lhb.planes, (hits[usize::from(i)].surface >> 1) as usize);
+    }
+    for &i in pending {
         let i = usize::from(i);
         let (query, span, depth) = (&queries[i], spans[i], places.depths[i] as i32);
         hits[i] = if query.ray & 1 == 0 {

@@ -6,46 +6,53 @@ use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::lattice::{DEPTH_ORIGIN, View};
 
 /// Queries that are projected side by side.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 
 /// Where the lists of a batch of queries are.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Places {
     /// Number of the list, beyond all for a view that there isn't.
     pub(super) lists: [u32; BATCH],
     /// The position's depth.
     pub(super) depths: [u32; BATCH],
+    /// 1 for [`LANES`] queries that all look towards the viewer, 0 for as many that look away.
+    pub(super) reversed: [Option<u32>; BATCH / LANES],
 }
 
-/// Projects at most [`BATCH`] queries, eight at a time where they look along one view, as neighbours in a sorted order do.
+/// Projects a batch, eight at a time where they look along one view, as neighbours in a sorted order do. `places` is a new one: one that
+/// is returned is copied.
 #[inline(always)]
-pub(super) fn project<W: Width>(width: W, lhb: &LhbData<'_>, queries: &[LhbQuery]) -> Places {
-    let mut places = Places { lists: [0; BATCH], depths: [0; BATCH] };
-    let mut first = 0;
-    for queries in queries.chunks(LANES) {
+pub(super) fn project<W: Width>(
+    width: W,
+    lhb: &LhbData<'_>,
+    queries: &[LhbQuery; BATCH],
+    places: &mut Places,
+) {
+    let (eights, _) = queries.as_chunks::<LANES>();
+    for (group, queries) in eights.iter().enumerate() {
+        let first = group * LANES;
         let lists = &mut places.lists[first..first + LANES];
         let depths = &mut places.depths[first..first + LANES];
-        if !project_eight(width, lhb, queries, lists, depths) {
+        if project_eight(width, lhb, queries, lists, depths) {
+            places.reversed[group] = Some(queries[0].ray & 1);
+        } else {
             for (i, query) in queries.iter().enumerate() {
                 (lists[i], depths[i]) = project_one(lhb, query);
             }
         }
-        first += LANES;
     }
-    places
 }
 
-/// Projects eight queries along one view; false, and nothing done, for others.
+/// Projects eight queries of one ray; false, and nothing done, for others.
 #[inline(always)]
 fn project_eight<W: Width>(
     width: W,
     lhb: &LhbData<'_>,
-    queries: &[LhbQuery],
+    queries: &[LhbQuery; LANES],
     lists: &mut [u32],
     depths: &mut [u32],
 ) -> bool {
-    let words: &[[u32; LANES]] = bytemuck::cast_slice(queries);
-    let &[a, b, c, d, e, f, g, h] = words else { return false };
+    let &[a, b, c, d, e, f, g, h]: &[[u32; LANES]; LANES] = bytemuck::cast_ref(queries);
     let number = queries[0].ray >> 1;
     let Some(view) = lhb.views.get(number as usize) else { return false };
     let [px, py, pz, ray, right, down, ..] = W::U8::transpose([
@@ -58,7 +65,7 @@ fn project_eight<W: Width>(
         W::U8::load(width, &g),
         W::U8::load(width, &h),
     ]);
-    if ray.shift_right::<1>().equal(W::U8::splat(width, number)) != 0xff {
+    if ray.equal(W::U8::splat(width, queries[0].ray)) != 0xff {
         return false;
     }
     let position = [px, py, pz];
