@@ -49,6 +49,25 @@ impl<W: Copy> Words for Array<W> {
         Array(self.0.map(|x| (x as i32 >> BITS) as u32), PhantomData)
     }
     #[inline(always)]
+    fn shift_right_signed_by(self, bits: u32) -> Self {
+        Array(self.0.map(|x| (x as i32 >> bits) as u32), PhantomData)
+    }
+    #[inline(always)]
+    fn dot_halves(self, other: Self) -> Self {
+        let low = |x: u32| i32::from(x as i16);
+        let high = |x: u32| x as i32 >> 16;
+        let dot = |a: u32, b: u32| (low(a) * low(b)).wrapping_add(high(a) * high(b)) as u32;
+        Array(std::array::from_fn(|i| dot(self.0[i], other.0[i])), PhantomData)
+    }
+    #[inline(always)]
+    fn least_signed(self, other: Self) -> Self {
+        Array(std::array::from_fn(|i| (self.0[i] as i32).min(other.0[i] as i32) as u32), PhantomData)
+    }
+    #[inline(always)]
+    fn greatest_signed(self, other: Self) -> Self {
+        Array(std::array::from_fn(|i| (self.0[i] as i32).max(other.0[i] as i32) as u32), PhantomData)
+    }
+    #[inline(always)]
     fn clamp_signed(self, edge: Self) -> Self {
         let clamp = |i: usize| (self.0[i] as i32).max(0).min(edge.0[i] as i32) as u32;
         Array(std::array::from_fn(clamp), PhantomData)
