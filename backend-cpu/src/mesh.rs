@@ -9,9 +9,6 @@ mod runs;
 
 pub(crate) use runs::{Boxes, RUN, Run, halves};
 
-/// Triangles whose boxes are tested at once.
-pub(crate) const CLUSTER: usize = RUN * RUN;
-
 /// A resident mesh.
 #[derive(Debug, Clone)]
 pub struct CpuMesh {
@@ -26,9 +23,9 @@ pub struct CpuMesh {
 impl CpuMesh {
     pub(crate) fn new(mesh: &LatticeMesh) -> Result<Self> {
         let triangles = mesh.triangles();
-        let count = triangles.len().div_ceil(CLUSTER);
+        let count = triangles.len().div_ceil(RUN * RUN);
         let (mut boxes, mut clusters) = (try_zeroed::<Boxes>(count)?, try_zeroed::<[Run; RUN]>(count)?);
-        let places = boxes.par_iter_mut().zip(&mut clusters).zip(triangles.par_chunks(CLUSTER));
+        let places = boxes.par_iter_mut().zip(&mut clusters).zip(triangles.par_chunks(RUN * RUN));
         places.for_each(|((boxes, cluster), triangles)| {
             for (i, triangles) in triangles.chunks(RUN).enumerate() {
                 cluster[i] = Run::of(mesh.vertices(), triangles);

@@ -34,6 +34,7 @@ use lists::Lists;
 /// What a thread needs for one view, kept for its next one.
 #[derive(Debug, Default)]
 struct Workspace {
+    kept: Vec<u32>,
     fragments: Vec<Fragment>,
     lists: Lists,
 }
@@ -48,12 +49,42 @@ struct Fragment {
 }
 
 /// The finished lists of one view.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct ViewLists {
-    /// Where each pixel's list ends.
-    ends: Vec<u32>,
+    ends: Ends,
     elements: Vec<LhbElement>,
     left_out: Vec<u32>,
+}
+
+/// Where lists end.
+#[derive(Debug)]
+enum Ends {
+    /// Of every pixel.
+    All(Vec<u32>),
+    /// Of pixels whose lists are not empty: the pixel and the end.
+    Few(Vec<[u32; 2]>),
+}
+
+impl Ends {
+    /// The end of every pixel's list, all moved by `first`.
+    fn write(&self, first: u32, ends: &mut [u32]) {
+        match self {
+            Ends::All(all) => {
+                for (end, own) in ends.iter_mut().zip(all) {
+                    *end = first + own;
+                }
+            }
+            Ends::Few(few) => {
+                let (mut filled, mut before) = (0, first);
+                for &[pixel, end] in few {
+                    // Lists between that pixel and the one before are empty.
+                    ends[filled..pixel as usize].fill(before);
+                    (filled, before) = (pixel as usize, first + end);
+                }
+                ends[filled..].fill(before);
+            }
+        }
+    }
 }
 
 pub(crate) fn rasterize_lhb(
@@ -91,10 +122,10 @@ impl Kernel for RasterizeView<'_> {
     #[inline(always)]
     fn run<W: Width>(self, width: W) -> ViewLists {
         let Self { mesh, view, params, workspace } = self;
-        let Workspace { fragments, lists } = workspace;
+        let Workspace { kept, fragments, lists } = workspace;
         // [1] project, cull, cover
         fragments.clear();
-        draw::draw::<W::U8>(width, mesh, view, params, fragments);
+        draw::draw::<W::U8>(width, mesh, view, params, kept, fragments);
         // [2] sort lists
         lists.sort(fragments, params)
     }
@@ -124,9 +155,7 @@ fn gather(views: &[ViewLists], view_count: usize, params: &RasterizeLhbParams) -
     let ends = offsets[1..].par_chunks_mut(pixels);
     parts.into_par_iter().zip(ends).zip(views).zip(first).for_each(|(((part, ends), view), first)| {
         part.copy_from_slice(&view.elements);
-        for (end, own) in ends.iter_mut().zip(&view.ends) {
-            *end = first as u32 + own;
-        }
+        view.ends.write(first as u32, ends);
     });
     left_out.par_chunks_mut(pixels).zip(views).for_each(|(part, view)| part.copy_from_slice(&view.left_out));
     Ok(LhbBuffers {

@@ -1,5 +1,6 @@
 //! Triangles that follow each other, in words of two 16-bit halves: a vector of them meets a view's rows in one instruction.
 
+use crate::simd::prefetch;
 use bytemuck::{Pod, Zeroable};
 
 /// Triangles of a run: the lanes of a vector.
@@ -30,6 +31,14 @@ impl Run {
             run.z2[lane] = halves(corners[2][2], 0);
         }
         run
+    }
+
+    /// Asks for its cache lines.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self) {
+        prefetch(&self.xy[0]);
+        prefetch(&self.xy[2]);
+        prefetch(&self.z2[RUN - 1]);
     }
 
     /// The corners of the triangle in a lane.

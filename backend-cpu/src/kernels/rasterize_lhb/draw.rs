@@ -7,30 +7,47 @@
 use super::Fragment;
 use super::cover::{Candidate, cover};
 use super::project::Projection;
-use crate::mesh::{CLUSTER, CpuMesh, RUN, Run};
+use crate::mesh::{Boxes, CpuMesh, RUN, Run};
 use crate::simd::Words;
 use twinlight_core::kernels::rasterize_lhb::RasterizeLhbParams;
 use twinlight_core::lattice::View;
 
-/// Appends the fragments of all triangles.
+/// Runs between the one that is drawn and the one that is fetched: a memory latency. Those between them are passed over, so that the
+/// processor's own prefetching doesn't know what comes.
+const AHEAD: usize = 8;
+
+/// Appends the fragments of all triangles. `kept` is working memory.
 #[inline(always)]
 pub(super) fn draw<U: Words>(
     token: U::Token,
     mesh: &CpuMesh,
     view: &View,
     params: &RasterizeLhbParams,
+    kept: &mut Vec<u32>,
     fragments: &mut Vec<Fragment>,
 ) {
     let projection = Projection::<U>::new(token, view, params.size);
-    let mut first = 0;
-    for (boxes, cluster) in mesh.boxes.iter().zip(&mesh.clusters) {
+    keep_runs(token, &projection, &mesh.boxes, kept);
+    let runs = mesh.clusters.as_flattened();
+    for (i, &number) in kept.iter().enumerate() {
+        if let Some(&later) = kept.get(i + AHEAD) {
+            runs[later as usize].prefetch();
+        }
+        let run = &runs[number as usize];
+        draw_run(token, &projection, run, number * RUN as u32, view, params, fragments);
+    }
+}
+
+/// Lists the runs whose boxes hold a centre, in order.
+#[inline(always)]
+fn keep_runs<U: Words>(token: U::Token, projection: &Projection<U>, boxes: &[Boxes], kept: &mut Vec<u32>) {
+    kept.clear();
+    for (i, boxes) in boxes.iter().enumerate() {
         let mut left = projection.boxes_with_a_centre(token, boxes);
         while left != 0 {
-            let i = left.trailing_zeros() as usize;
+            kept.push((i * RUN) as u32 + left.trailing_zeros());
             left &= left - 1;
-            draw_run(token, &projection, &cluster[i], first + (i * RUN) as u32, view, params, fragments);
         }
-        first = first.wrapping_add(CLUSTER as u32);
     }
 }
 

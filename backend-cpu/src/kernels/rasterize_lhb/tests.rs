@@ -59,7 +59,7 @@ impl Kernel for Culled<'_> {
 
     fn run<W: Width>(self, width: W) -> Vec<Fragment> {
         let mut fragments = Vec::new();
-        draw::<W::U8>(width, &CpuMesh::new(self.0).unwrap(), self.1, self.2, &mut fragments);
+        draw::<W::U8>(width, &CpuMesh::new(self.0).unwrap(), self.1, self.2, &mut Vec::new(), &mut fragments);
         fragments
     }
 }
