@@ -1,6 +1,6 @@
 //! A snapped mesh in host memory, laid out for the rasterizer.
 
-use crate::buffer::{try_collect, try_zeroed};
+use crate::buffer::try_zeroed;
 use rayon::prelude::*;
 use twinlight_core::Result;
 use twinlight_core::lattice::{LatticeMesh, LatticePlane};
@@ -25,14 +25,18 @@ impl CpuMesh {
         let triangles = mesh.triangles();
         let count = triangles.len().div_ceil(RUN * RUN);
         let (mut boxes, mut clusters) = (try_zeroed::<Boxes>(count)?, try_zeroed::<[Run; RUN]>(count)?);
-        let places = boxes.par_iter_mut().zip(&mut clusters).zip(triangles.par_chunks(RUN * RUN));
-        places.for_each(|((boxes, cluster), triangles)| {
+        let mut planes = try_zeroed::<LatticePlane>(triangles.len())?;
+        let places = boxes.par_iter_mut().zip(&mut clusters).zip(planes.par_chunks_mut(RUN * RUN));
+        places.zip(triangles.par_chunks(RUN * RUN)).for_each(|(((boxes, cluster), planes), triangles)| {
             for (i, triangles) in triangles.chunks(RUN).enumerate() {
                 cluster[i] = Run::of(mesh.vertices(), triangles);
                 boxes.set(i, mesh.vertices(), triangles);
             }
+            for (plane, triangle) in planes.iter_mut().zip(triangles) {
+                *plane = LatticePlane::of(triangle.map(|v| mesh.vertices()[v as usize]));
+            }
         });
-        Ok(Self { boxes, clusters, planes: try_collect(mesh.planes())? })
+        Ok(Self { boxes, clusters, planes })
     }
 
     /// Number of triangles.
