@@ -263,7 +263,7 @@ impl Backend for CpuBackend {
         let film = film.as_mut_slice();
         params.check(film.len(), views, map.as_slice().len())?;
         check_equal("walk_lhb size", lhb.size as usize, params.lookup.size as usize)?;
-        check_equal("walk_lhb triangles", mesh.triangles.len(), scene.data().triangles.len())?;
+        check_equal("walk_lhb triangles", mesh.len(), scene.data().triangles.len())?;
         let lookups = Lookups { lhb: lhb_data(mesh, lhb, views)?, map: map.as_slice() };
         self.run("walk_lhb", || {
             kernels::walk_lhb::walk_lhb(self.isa, scene.data(), lookups, params, film);

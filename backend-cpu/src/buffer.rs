@@ -31,14 +31,6 @@ pub(crate) fn out_of_memory<T>(len: usize) -> Error {
     Error::OutOfMemory { device: "host".into(), bytes }
 }
 
-/// The items of an iterator that knows how many it has.
-pub(crate) fn try_collect<T>(items: impl ExactSizeIterator<Item = T>) -> Result<Vec<T>> {
-    let mut collected = Vec::new();
-    collected.try_reserve_exact(items.len()).map_err(|_| out_of_memory::<T>(items.len()))?;
-    collected.extend(items);
-    Ok(collected)
-}
-
 /// A copy of `data`.
 pub(crate) fn try_copy<T: Clone>(data: &[T]) -> Result<Vec<T>> {
     let mut copy = Vec::new();

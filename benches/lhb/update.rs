@@ -115,11 +115,16 @@ fn updates(
             ratio.2
         );
     }
-    steps(backend, frames, settings)
+    steps(backend, frames, settings, rounds)
 }
 
-/// What an update is made of.
-fn steps(backend: &CpuBackend, frames: &[CompiledScene], settings: &LookupSettings) -> Result<()> {
+/// What an update is made of, by processor time.
+fn steps(
+    backend: &CpuBackend,
+    frames: &[CompiledScene],
+    settings: &LookupSettings,
+    rounds: usize,
+) -> Result<()> {
     let lattice = Lattice::of_scene(&frames[0])?;
     let (staying, _) = frames[0].parts();
     let lines = settings.directions.lines().iter();
@@ -134,11 +139,12 @@ fn steps(backend: &CpuBackend, frames: &[CompiledScene], settings: &LookupSettin
     let first = LatticeMesh::of_triangles(&lattice, staying)?;
     let kept = backend.rasterize_lhb(&backend.upload_mesh(&first)?, &views, &params)?;
     let mut times: [Vec<f64>; 4] = Default::default();
-    for frame in frames {
-        let mut start = Instant::now();
+    for frame in (0..rounds).flat_map(|_| frames) {
+        let mut used = processor_seconds();
         let mut lap = |step: usize| {
-            times[step].push(start.elapsed().as_secs_f64() * 1e3);
-            start = Instant::now();
+            let now = processor_seconds();
+            times[step].push((now - used) * 1e3);
+            used = now;
         };
         let object = LatticeMesh::of_triangles(&lattice, frame.parts().1)?;
         let resident = backend.upload_mesh(&object)?;
@@ -152,7 +158,7 @@ fn steps(backend: &CpuBackend, frames: &[CompiledScene], settings: &LookupSettin
     }
     let [snap, rasterize, merge, join] = times.map(spread);
     println!(
-        "    of which: snap {:.1} ms ({:.1} to {:.1}), rasterize {:.1} ({:.1} to {:.1}), merge {:.1} ({:.1} to {:.1}), planes of the \
+        "    of which, of the processor: snap {:.1} ms ({:.1} to {:.1}), rasterize {:.1} ({:.1} to {:.1}), merge {:.1} ({:.1} to {:.1}), planes of the \
          whole {:.1} ({:.1} to {:.1})",
         snap.0,
         snap.1,

@@ -3,12 +3,13 @@
 use super::{Avx2, Words};
 use std::arch::x86_64::{
     __m256i, _mm_cvtsi32_si128, _mm256_add_epi32, _mm256_and_si256, _mm256_blend_epi32, _mm256_castsi256_ps,
-    _mm256_cmpeq_epi32, _mm256_cmpgt_epi32, _mm256_cvtepi32_ps, _mm256_loadu_si256, _mm256_max_epi32,
-    _mm256_min_epi32, _mm256_movemask_ps, _mm256_mul_ps, _mm256_mullo_epi32, _mm256_or_si256,
-    _mm256_permute2x128_si256, _mm256_set1_epi8, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi8,
-    _mm256_setzero_si256, _mm256_shuffle_epi8, _mm256_srai_epi32, _mm256_srl_epi32, _mm256_srli_epi16,
-    _mm256_srli_epi32, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_unpackhi_epi32, _mm256_unpackhi_epi64,
-    _mm256_unpacklo_epi32, _mm256_unpacklo_epi64, _mm256_xor_si256,
+    _mm256_cmpeq_epi32, _mm256_cmpgt_epi32, _mm256_cvtepi32_ps, _mm256_loadu_si256, _mm256_madd_epi16,
+    _mm256_max_epi32, _mm256_min_epi32, _mm256_movemask_ps, _mm256_mul_ps, _mm256_mullo_epi32,
+    _mm256_or_si256, _mm256_permute2x128_si256, _mm256_set1_epi8, _mm256_set1_epi32, _mm256_set1_ps,
+    _mm256_setr_epi8, _mm256_setzero_si256, _mm256_shuffle_epi8, _mm256_sra_epi32, _mm256_srai_epi32,
+    _mm256_srl_epi32, _mm256_srli_epi16, _mm256_srli_epi32, _mm256_storeu_ps, _mm256_storeu_si256,
+    _mm256_unpackhi_epi32, _mm256_unpackhi_epi64, _mm256_unpacklo_epi32, _mm256_unpacklo_epi64,
+    _mm256_xor_si256,
 };
 use std::ops::{Add, BitAnd, BitXor, Mul};
 
@@ -69,6 +70,26 @@ impl Words for U8 {
     fn shift_right_signed<const BITS: i32>(self) -> Self {
         // SAFETY: words exist, so the processor has AVX2.
         U8(unsafe { _mm256_srai_epi32::<BITS>(self.0) })
+    }
+    #[inline(always)]
+    fn shift_right_signed_by(self, bits: u32) -> Self {
+        // SAFETY: words exist, so the processor has AVX2.
+        U8(unsafe { _mm256_sra_epi32(self.0, _mm_cvtsi32_si128(bits as i32)) })
+    }
+    #[inline(always)]
+    fn dot_halves(self, other: Self) -> Self {
+        // SAFETY: words exist, so the processor has AVX2.
+        U8(unsafe { _mm256_madd_epi16(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn least_signed(self, other: Self) -> Self {
+        // SAFETY: words exist, so the processor has AVX2.
+        U8(unsafe { _mm256_min_epi32(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn greatest_signed(self, other: Self) -> Self {
+        // SAFETY: words exist, so the processor has AVX2.
+        U8(unsafe { _mm256_max_epi32(self.0, other.0) })
     }
     #[inline(always)]
     fn clamp_signed(self, edge: Self) -> Self {

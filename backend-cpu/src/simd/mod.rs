@@ -84,6 +84,18 @@ pub trait Words:
     /// Every lane, as `i32`, shifted to the right: rounded down.
     #[must_use]
     fn shift_right_signed<const BITS: i32>(self) -> Self;
+    /// Every lane, as `i32`, shifted to the right by a number of bits below 32.
+    #[must_use]
+    fn shift_right_signed_by(self, bits: u32) -> Self;
+    /// Halves of every lane, as `i16`, times those of `other`: the sum of both products.
+    #[must_use]
+    fn dot_halves(self, other: Self) -> Self;
+    /// The lesser of every two lanes, as `i32`.
+    #[must_use]
+    fn least_signed(self, other: Self) -> Self;
+    /// The greater of every two lanes, as `i32`.
+    #[must_use]
+    fn greatest_signed(self, other: Self) -> Self;
     /// Every lane, as `i32`, brought into [0, `edge`'s lane].
     #[must_use]
     fn clamp_signed(self, edge: Self) -> Self;

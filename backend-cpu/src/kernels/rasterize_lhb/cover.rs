@@ -1,13 +1,12 @@
 //! The pixels that a triangle covers, on whichever path.
 
 use super::Fragment;
-use super::project::Screen;
 use super::setup::{Plane, Setup, setup};
-use crate::mesh::CpuMesh;
+use crate::mesh::Run;
 use twinlight_core::kernels::rasterize_lhb::{
     PATH_AUTO, PATH_BLOCKS, PATH_LINEAR, PATH_MICRO, RasterizeLhbParams,
 };
-use twinlight_core::lattice::View;
+use twinlight_core::lattice::{View, subpixel_bits};
 
 mod blocks;
 mod linear;
@@ -17,31 +16,41 @@ mod spans;
 /// Pixels in the bounds of the largest triangle that is tested pixel by pixel.
 const MICRO_PIXELS: i32 = 32;
 
+/// A triangle that may cover a pixel's centre.
+pub(super) struct Candidate<'a> {
+    /// Number in the mesh.
+    pub(super) triangle: u32,
+    /// Screen coordinates.
+    pub(super) corners: [[i32; 2]; 3],
+    /// Where its positions are.
+    pub(super) run: &'a Run,
+    pub(super) lane: usize,
+}
+
 /// Appends a triangle's fragments.
 #[inline(always)]
 pub(super) fn cover(
-    mesh: &CpuMesh,
-    screen: &Screen,
+    candidate: &Candidate<'_>,
     view: &View,
     params: &RasterizeLhbParams,
-    triangle: u32,
     fragments: &mut Vec<Fragment>,
 ) {
-    let Some(setup) = setup(mesh, screen, triangle) else { return };
+    let bits = subpixel_bits(params.size);
+    let Some(setup) = setup(candidate.corners, candidate.triangle, bits) else { return };
     let is_small = setup.extent[0] * setup.extent[1] <= MICRO_PIXELS;
     if params.path == PATH_AUTO && is_small || params.path == PATH_MICRO {
         if is_small {
             let covered = micro::coverage(&setup);
             if covered != 0 {
-                let plane = setup.plane(mesh, view, screen.bits);
+                let plane = setup.plane(candidate.run, candidate.lane, view, bits);
                 micro::put(covered, &setup, &mut Sink::new(&setup, &plane, params, fragments));
             }
             return;
         }
-        let plane = setup.plane(mesh, view, screen.bits);
+        let plane = setup.plane(candidate.run, candidate.lane, view, bits);
         return micro::every_pixel(&setup, &mut Sink::new(&setup, &plane, params, fragments));
     }
-    let plane = setup.plane(mesh, view, screen.bits);
+    let plane = setup.plane(candidate.run, candidate.lane, view, bits);
     let mut sink = Sink::new(&setup, &plane, params, fragments);
     match params.path {
         PATH_BLOCKS => blocks::blocks(&setup, &mut sink),

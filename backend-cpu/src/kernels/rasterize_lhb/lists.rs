@@ -1,7 +1,7 @@
 //! Fragments into sorted lists.
 
 use super::setup::element;
-use super::{Fragment, ViewLists};
+use super::{Ends, Fragment, ViewLists};
 use twinlight_core::kernels::rasterize_lhb::{CAP_NEAR, RasterizeLhbParams};
 
 /// Lists up to this long are sorted by insertion.
@@ -23,28 +23,12 @@ impl Lists {
     #[inline(always)]
     pub(super) fn sort(&mut self, fragments: &mut [Fragment], params: &RasterizeLhbParams) -> ViewLists {
         let pixels = params.size as usize * params.size as usize;
-        if fragments.len() < pixels / SPARSE {
-            self.sort_few(fragments, pixels);
-        } else {
-            self.sort_by_pixel(fragments, pixels);
+        // With a cap, every pixel is visited anyway: it has a number of elements left out.
+        if params.layer_cap == 0 && fragments.len() < pixels / SPARSE {
+            return few_lists(fragments);
         }
+        self.sort_by_pixel(fragments, pixels);
         self.finish(params)
-    }
-
-    /// By comparing: what an object covers in a view should not cost a visit of every pixel.
-    fn sort_few(&mut self, fragments: &mut [Fragment], pixels: usize) {
-        fragments.sort_unstable_by_key(|fragment| (fragment.pixel, fragment.key));
-        self.keys.clear();
-        self.keys.extend(fragments.iter().map(|fragment| fragment.key));
-        self.cursors.resize(pixels, 0);
-        let mut filled = 0;
-        for (i, fragment) in fragments.iter().enumerate() {
-            // Lists before this one end where it begins.
-            let pixel = fragment.pixel as usize;
-            self.cursors[filled..pixel].fill(i as u32);
-            filled = pixel;
-        }
-        self.cursors[filled..].fill(fragments.len() as u32);
     }
 
     /// Counts, scans, scatters and sorts.
@@ -74,24 +58,39 @@ impl Lists {
 
     /// Applies the cap.
     fn finish(&self, params: &RasterizeLhbParams) -> ViewLists {
-        let mut lists = ViewLists::default();
         if params.layer_cap == 0 {
-            lists.elements.extend(self.keys.iter().map(|&key| element(key)));
-            lists.ends.clone_from(&self.cursors);
-            return lists;
+            let elements = self.keys.iter().map(|&key| element(key)).collect();
+            return ViewLists { ends: Ends::All(self.cursors.clone()), elements, left_out: Vec::new() };
         }
+        let (mut elements, mut left_out) = (Vec::new(), Vec::new());
+        let mut ends = Vec::with_capacity(self.cursors.len());
         let mut begin = 0;
         for &end in &self.cursors {
             let list = &self.keys[begin..end as usize];
             let kept = list.len().min(params.layer_cap as usize);
             let kept = if params.cap_side == CAP_NEAR { &list[..kept] } else { &list[list.len() - kept..] };
-            lists.elements.extend(kept.iter().map(|&key| element(key)));
-            lists.ends.push(lists.elements.len() as u32);
-            lists.left_out.push((list.len() - kept.len()) as u32);
+            elements.extend(kept.iter().map(|&key| element(key)));
+            ends.push(elements.len() as u32);
+            left_out.push((list.len() - kept.len()) as u32);
             begin = end as usize;
         }
-        lists
+        ViewLists { ends: Ends::All(ends), elements, left_out }
     }
+}
+
+/// Lists made by comparing: what an object covers in a view should not cost a visit of every pixel.
+fn few_lists(fragments: &mut [Fragment]) -> ViewLists {
+    fragments.sort_unstable_by_key(|fragment| (fragment.pixel, fragment.key));
+    let elements = fragments.iter().map(|fragment| element(fragment.key)).collect();
+    let mut ends: Vec<[u32; 2]> = Vec::new();
+    for (i, fragment) in fragments.iter().enumerate() {
+        let end = i as u32 + 1;
+        match ends.last_mut() {
+            Some(last) if last[0] == fragment.pixel => last[1] = end,
+            _ => ends.push([fragment.pixel, end]),
+        }
+    }
+    ViewLists { ends: Ends::Few(ends), elements, left_out: Vec::new() }
 }
 
 #[inline(always)]

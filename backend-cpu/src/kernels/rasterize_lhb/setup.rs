@@ -1,15 +1,12 @@
 //! What is worked out once per triangle and view: edges and the plane of depth.
 
-use super::project::{Screen, distance};
-use crate::mesh::CpuMesh;
+use crate::mesh::Run;
 use twinlight_core::kernels::rasterize_lhb::LhbElement;
 use twinlight_core::lattice::{DEPTH_ORIGIN, View};
 
 /// A triangle on the screen, turned so that its area is positive.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Setup {
-    /// Vertex numbers, in the order of the corners.
-    vertices: [u32; 3],
     /// Screen coordinates.
     corners: [[i32; 2]; 3],
     /// Twice the area.
@@ -39,22 +36,19 @@ pub(super) struct Plane {
     surface: u32,
 }
 
-/// The set-up of a triangle, or `None` when it is seen edge-on.
+/// The set-up of a triangle with these corners on the screen, or `None` when it is seen edge-on.
 #[inline(always)]
-pub(super) fn setup(mesh: &CpuMesh, screen: &Screen, triangle: u32) -> Option<Setup> {
-    let mut vertices = mesh.triangles[triangle as usize];
-    let mut corners = [screen.at(vertices[0]), screen.at(vertices[1]), screen.at(vertices[2])];
+pub(super) fn setup(mut corners: [[i32; 2]; 3], triangle: u32, bits: u32) -> Option<Setup> {
     let mut area = edge(corners[0], corners[1], corners[2]);
     if area == 0 {
         return None;
     }
     let front = area < 0;
     if front {
-        vertices.swap(1, 2);
         corners.swap(1, 2);
         area = -area;
     }
-    let (bits, half) = (screen.bits, 1_i32 << (screen.bits - 1));
+    let half = 1_i32 << (bits - 1);
     let mut first = [0; 2];
     let mut extent = [0; 2];
     for axis in 0..2 {
@@ -76,7 +70,7 @@ pub(super) fn setup(mesh: &CpuMesh, screen: &Screen, triangle: u32) -> Option<Se
         along[i] = dx << bits;
     }
     let surface = triangle << 1 | u32::from(front);
-    Some(Setup { vertices, corners, area, surface, first, extent, edges, across, along })
+    Some(Setup { corners, area, surface, first, extent, edges, across, along })
 }
 
 /// Twice the area of the triangle from `a` to `b` to `p`, positive when they run clockwise as seen.
@@ -96,11 +90,12 @@ impl Setup {
         edges
     }
 
-    /// The plane of depth.
+    /// The plane of depth of the triangle, which is in a lane of a run.
     #[inline(always)]
-    pub(super) fn plane(&self, mesh: &CpuMesh, view: &View, bits: u32) -> Plane {
-        let [v0, v1, v2] = self.vertices;
-        let [z0, z1, z2] = [distance(mesh, view, v0), distance(mesh, view, v1), distance(mesh, view, v2)];
+    pub(super) fn plane(&self, run: &Run, lane: usize, view: &View, bits: u32) -> Plane {
+        let [a, b, c] = run.corners(lane);
+        let [z0, z1, z2] = [distance(view, a), distance(view, b), distance(view, c)];
+        let [z1, z2] = if self.surface & 1 == 1 { [z2, z1] } else { [z1, z2] };
         let [p0, p1, p2] = self.corners;
         let (dz1, dz2) = (i64::from(z1 - z0), i64::from(z2 - z0));
         let nx = dz1 * i64::from(p2[1] - p0[1]) - dz2 * i64::from(p1[1] - p0[1]);
@@ -120,6 +115,13 @@ impl Setup {
             surface: self.surface,
         }
     }
+}
+
+/// Distance of a position from the plane through the lattice's centre, 2⁻¹⁴ steps.
+#[inline(always)]
+fn distance(view: &View, p: [i32; 3]) -> i32 {
+    let f = view.forward;
+    f[0] * p[0] + f[1] * p[1] + f[2] * p[2]
 }
 
 /// The nearest integer to n / area, halves up, modulo 2³².
