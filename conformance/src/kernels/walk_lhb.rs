@@ -10,6 +10,7 @@ mod cases;
 mod laws;
 mod moved;
 mod reference;
+mod shadows;
 mod walked;
 
 use super::trace_paths::film::Mean;
@@ -30,6 +31,7 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     laws::list(list);
     moved::list(list);
     reference::list(list);
+    shadows::list(list);
 }
 
 /// Standard errors by which a mean may miss: with fixed seeds this is decided once, and 4.5 leaves 7·10⁻⁶ to chance.
