@@ -209,13 +209,14 @@ fn shadow_margin(block: WalkLhbBlock) -> f32 {
     return aside_at_most(block) * LEAST_SLOPE * block.unit_per_step;
 }
 
-// Whether what the lookup of a shadow ray found is before the light, which is `distance` away; FAR for infinitely.
+// Whether what the lookup of a shadow ray found is between its start and the light, which is `distance` away; FAR for infinitely.
 fn lhb_shadows(block: WalkLhbBlock, hit: LhbHit, distance: f32) -> bool {
     if hit.slot == NO_ELEMENT {
         return false;
     }
     let end = select(distance - shadow_margin(block), distance * SHADOW_REACH, hit.is_exact);
-    return hit.t < end;
+    // What the ray passes beside may be behind its start.
+    return hit.t > 0.0f && hit.t < end;
 }
 
 fn not_negative(x: f32) -> f32 {

@@ -27,11 +27,11 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "walk_lhb":
         closed_furnaces, sphere_room, lights_over_a_floor, environments, white_furnaces, mirrors_and_glass,
     );
+    shadows::list(list);
     cases::list(list);
     laws::list(list);
     moved::list(list);
     reference::list(list);
-    shadows::list(list);
 }
 
 /// Standard errors by which a mean may miss: with fixed seeds this is decided once, and 4.5 leaves 7·10⁻⁶ to chance.

@@ -239,14 +239,15 @@ pub fn shadow_margin(block: &WalkLhbBlock) -> f32 {
     aside_at_most(block) * LEAST_SLOPE * block.unit_per_step
 }
 
-/// Whether what the lookup of a shadow ray found is before the light, which is `distance` away; [`FAR`] for infinitely.
+/// Whether what the lookup of a shadow ray found is between its start and the light, which is `distance` away; [`FAR`] for infinitely.
 #[inline(always)]
 pub fn lhb_shadows(block: &WalkLhbBlock, hit: &LhbHit, distance: f32) -> bool {
     if hit.slot == NO_ELEMENT {
         return false;
     }
     let end = if hit.is_exact { distance * SHADOW_REACH } else { distance - shadow_margin(block) };
-    hit.t < end
+    // What the ray passes beside may be behind its start.
+    hit.t > 0.0 && hit.t < end
 }
 
 #[inline(always)]

@@ -14,7 +14,7 @@ use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsP
 use twinlight_core::kernels::walk_lhb::{
     CONE, SHADOW_LOOKUPS, SHADOW_LOOKUPS_FIRST, TRACE_MISSES, WalkLhbBlock, WalkLhbParams,
 };
-use twinlight_core::scene::{Camera, CompiledScene, Light, Material, Scene};
+use twinlight_core::scene::{Camera, Light, Material, Mesh, Scene};
 use twinlight_fixtures::meshes::{quad, with_material};
 
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
@@ -60,11 +60,12 @@ fn small_floors() -> Vec<Known> {
     all
 }
 
-/// A black square of half-width 0.6 above the floor, around x = 0 and a z.
-fn with_square(mut scene: Scene, z: f64) -> Scene {
+/// A black square of half-width 0.6 above the floor, around x = 0 and a z. It faces the floor: close by, lookups go from fronts to
+/// fronts.
+fn with_square(mut scene: Scene, z: f32) -> Scene {
     let black = scene.add_material(Material::diffuse("black", [0.0; 3]));
-    let (y, s, near, far) = (0.4, 0.6, (z + 0.6) as f32, (z - 0.6) as f32);
-    let square = quad([-s, y, near], [s, y, near], [s, y, far], [-s, y, far]);
+    let (y, s, near, far) = (0.4, 0.6, z + 0.6, z - 0.6);
+    let square = quad([-s, y, far], [s, y, far], [s, y, near], [-s, y, near]);
     scene.add_mesh(with_material(square, black));
     scene
 }
@@ -100,33 +101,25 @@ fn squares_shadow<B: Backend>(cx: &Context<'_, B>) -> Check {
     Ok(())
 }
 
-/// A box of 2 × 1 × 1 with a lamp in its left half, seen in its right one from above the middle; a wall may part the halves.
+/// Across a box of height and depth 1.
+fn across(x: f32, faces_right: bool) -> Mesh {
+    let (near, far) = if faces_right { (1.0, 0.0) } else { (0.0, 1.0) };
+    quad([x, 0.0, near], [x, 0.0, far], [x, 1.0, far], [x, 1.0, near])
+}
+
+/// A box of 2 × 1 × 1 with a lamp in its left half and the camera in its right one; a thin wall may part the halves.
 fn halves(has_wall: bool) -> Scene {
     let mut scene = Scene { materials: vec![Material::diffuse("white", [0.8; 3])], ..Scene::default() };
-    let corner = |x: f32, y: f32, z: f32| [x, y, z];
-    for side in [0.0, 1.0] {
-        scene.add_mesh(quad(
-            corner(-1.0, side, 0.0),
-            corner(1.0, side, 0.0),
-            corner(1.0, side, 1.0),
-            corner(-1.0, side, 1.0),
-        ));
-        scene.add_mesh(quad(
-            corner(-1.0, 0.0, side),
-            corner(1.0, 0.0, side),
-            corner(1.0, 1.0, side),
-            corner(-1.0, 1.0, side),
-        ));
-        let x = 2.0 * side - 1.0;
-        scene.add_mesh(quad(
-            corner(x, 0.0, 0.0),
-            corner(x, 1.0, 0.0),
-            corner(x, 1.0, 1.0),
-            corner(x, 0.0, 1.0),
-        ));
-    }
+    let (l, r) = (-1.0, 1.0);
+    scene.add_mesh(quad([l, 0.0, 1.0], [r, 0.0, 1.0], [r, 0.0, 0.0], [l, 0.0, 0.0]));
+    scene.add_mesh(quad([l, 1.0, 0.0], [r, 1.0, 0.0], [r, 1.0, 1.0], [l, 1.0, 1.0]));
+    scene.add_mesh(quad([l, 0.0, 0.0], [r, 0.0, 0.0], [r, 1.0, 0.0], [l, 1.0, 0.0]));
+    scene.add_mesh(quad([r, 0.0, 1.0], [l, 0.0, 1.0], [l, 1.0, 1.0], [r, 1.0, 1.0]));
+    scene.add_mesh(across(l, true));
+    scene.add_mesh(across(r, false));
     if has_wall {
-        scene.add_mesh(quad([0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]));
+        scene.add_mesh(across(0.01, true));
+        scene.add_mesh(across(-0.01, false));
     }
     scene.lights.push(Light::Point { position: [-0.5, 0.6, 0.5], intensity: [1.0; 3] });
     scene.camera = Some(Camera {
@@ -181,7 +174,7 @@ fn shadows_are_looked_up<B: Backend>(cx: &Context<'_, B>) -> Check {
 }
 
 fn any_split_with_shadow_lookups<B: Backend>(cx: &Context<'_, B>) -> Check {
-    let (_, whole, prepared): (CompiledScene, _, _) = mixed(cx)?;
+    let (_, whole, prepared) = mixed(cx)?;
     let lookup = WalkLhbBlock { flags: CONE | ALL, ..prepared.buffers.lookup };
     let want = flagged(cx, &prepared, &whole, CONE | ALL)?;
     any_split(cx, &whole, &want, |part, film| {
