@@ -52,11 +52,55 @@ pub(crate) struct Met {
 /// The surface that a path goes on from.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Left {
-    pub(crate) slot: u32,
     pub(crate) surface: Surface,
     /// Whether it scatters in all directions, not as a mirror or glass.
     pub(crate) is_opaque: bool,
 }
+
+/// Light from one point of a light, which arrives unless something shadows it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DirectLight {
+    pub(crate) radiance: Vec3,
+    /// How often it has been scattered before the camera.
+    pub(crate) order: u32,
+    pub(crate) origin: Vec3,
+    /// To the point; of unit length to infinity.
+    pub(crate) direction: Vec3,
+    /// Whether there is no point, but infinity.
+    pub(crate) infinite: bool,
+    /// Index of the light.
+    light: u32,
+    /// Unit normal of the surface that scatters it, on its side.
+    pub(crate) normal: Vec3,
+    /// Whether that side is the front.
+    pub(crate) front: bool,
+}
+
+impl DirectLight {
+    /// End of the shadow ray, in lengths of its direction.
+    #[inline(always)]
+    fn reach(&self) -> f32 {
+        if self.infinite { FAR } else { SHADOW_REACH }
+    }
+
+    /// Whether a sphere light is in between.
+    #[inline(always)]
+    pub(crate) fn is_behind_spheres(&self, scene: &SceneView<'_>) -> bool {
+        spheres_occlude(scene, self.origin, self.direction, self.reach(), self.light)
+    }
+}
+
+/// What a visit of a vertex leaves to be done.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Visited {
+    /// The surface that the path goes on from; `None` ends it.
+    pub(crate) left: Option<Left>,
+    /// Light to be added if it arrives, before the path is visited again.
+    pub(crate) direct: Option<DirectLight>,
+}
+
+/// A path ends, and no light waits for its shadow ray.
+const ENDED: Visited = Visited { left: None, direct: None };
 
 /// How the light of emissive triangles is shared between points sampled on them and scattered rays that meet them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,11 +137,10 @@ pub(crate) fn start<W: Width>(width: W, params: &TracePathsParams, pixel: u32, s
     }
 }
 
-/// Adds the light of what the ray meets and of what shines on it, and sends the path on. `None` ends it.
+/// Adds the light of what the ray meets, samples what shines on it, and sends the path on.
 #[inline(always)]
-pub(crate) fn visit<W: Width>(
+pub(crate) fn visit(
     path: &mut Path,
-    tracer: &WideTracer<'_, W>,
     scene: &SceneView<'_>,
     params: &TracePathsParams,
     hit: &Met,
@@ -106,23 +149,23 @@ pub(crate) fn visit<W: Width>(
     numbers: &VertexNumbers,
     emitters: Emitters,
     aim: Option<Aim>,
-) -> Option<Left> {
+) -> Visited {
     let sphere = nearest_sphere(scene, path.origin, path.direction, hit.t);
     if sphere.light != NONE {
         if !sphere.inside {
             add_sphere_emission(path, scene, sphere.light);
         }
-        return None;
+        return ENDED;
     }
     if hit.slot == NONE {
         add_environment(path, scene);
-        return None;
+        return ENDED;
     }
     let surface = surface_at(scene, hit.slot, hit.u, hit.v, path.direction);
     let material = &scene.materials[surface.material as usize];
     add_surface_emission(path, scene, &surface, material, hit.t, emitters);
     if path.vertices == params.max_bounces {
-        return None;
+        return ENDED;
     }
     let (tangent, bitangent) = basis(surface.shading_normal);
     let to_viewer = -path.direction;
@@ -137,11 +180,13 @@ pub(crate) fn visit<W: Width>(
     let direction = to_world(tangent, bitangent, surface.shading_normal, scattered.direction);
     let leaves = direction.dot(surface.geometric_normal);
     let origin = offset_origin(surface.position, surface.offset, surface.geometric_normal, direction);
+    let mut direct = None;
     if material.kind == MATERIAL_OPAQUE && scene.environment.light_count > 0 {
-        add_direct_light(path, tracer, scene, &surface, frame, wo, sampler, base, numbers, emitters);
+        direct = direct_light(path, scene, &surface, frame, wo, sampler, base, numbers, emitters);
     }
+    let end = Visited { left: None, direct };
     if scattered.direction == Vec3::ZERO || (material.kind != MATERIAL_DIELECTRIC && !(leaves > 0.0)) {
-        return None;
+        return end;
     }
     path.origin = origin;
     path.direction = direction;
@@ -149,14 +194,29 @@ pub(crate) fn visit<W: Width>(
     path.pdf = scattered.pdf;
     path.vertices += 1;
     if !survives(path, params, numbers.roulette) {
-        return None;
+        return end;
     }
-    Some(Left { slot: hit.slot, surface, is_opaque: material.kind == MATERIAL_OPAQUE })
+    Visited { left: Some(Left { surface, is_opaque: material.kind == MATERIAL_OPAQUE }), direct }
+}
+
+/// Adds light unless a shadow ray finds something in between.
+#[inline(always)]
+pub(crate) fn add_direct_light<W: Width>(
+    light: &mut PathLight,
+    tracer: &WideTracer<'_, W>,
+    scene: &SceneView<'_>,
+    direct: &DirectLight,
+) {
+    if !tracer.occluded(direct.origin, direct.direction, 0.0, direct.reach())
+        && !direct.is_behind_spheres(scene)
+    {
+        add_light(light, direct.order, direct.radiance);
+    }
 }
 
 /// Adds light that has been scattered `order` times.
 #[inline(always)]
-fn add_light(light: &mut PathLight, order: u32, radiance: Vec3) {
+pub(crate) fn add_light(light: &mut PathLight, order: u32, radiance: Vec3) {
     light[usize::from(order > 1)] += radiance;
 }
 
@@ -220,11 +280,10 @@ fn add_surface_emission(
     add_light(&mut path.light, path.vertices, radiance);
 }
 
-/// One light, one point on it, one shadow ray.
+/// One light and one point on it.
 #[inline(always)]
-fn add_direct_light<W: Width>(
-    path: &mut Path,
-    tracer: &WideTracer<'_, W>,
+fn direct_light(
+    path: &Path,
     scene: &SceneView<'_>,
     surface: &Surface,
     frame: (Vec3, Vec3, Vec3),
@@ -233,7 +292,7 @@ fn add_direct_light<W: Width>(
     base: u32,
     numbers: &VertexNumbers,
     emitters: Emitters,
-) {
+) -> Option<DirectLight> {
     let index = select_light(scene, numbers.light_choice);
     let mut texel = [0, 0];
     if index == scene.environment.light {
@@ -242,7 +301,7 @@ fn add_direct_light<W: Width>(
     let [u, v] = numbers.light_point;
     let light = sample_light(scene, index, surface.position, u, v, texel);
     if !(light.pdf > 0.0) || !(light.direction.dot(surface.geometric_normal) > 0.0) {
-        return;
+        return None;
     }
     let wi =
         Vec3::new(light.direction.dot(frame.0), light.direction.dot(frame.1), light.direction.dot(frame.2));
@@ -250,30 +309,28 @@ fn add_direct_light<W: Width>(
     let value = evaluate(material, surface.albedo, wo, wi);
     let unshadowed = path.throughput * value.f_cos * light.emission;
     if !(unshadowed.x > 0.0 || unshadowed.y > 0.0 || unshadowed.z > 0.0) {
-        return;
+        return None;
     }
     let is_denser = emitters == Emitters::Denser && scene.lights[index as usize].kind == LIGHT_TRIANGLE;
     if is_denser && value.pdf > light.pdf {
-        return;
+        return None;
     }
     let origin = offset_origin(surface.position, surface.offset, surface.geometric_normal, light.direction);
-    let mut direction = light.direction;
-    let mut reach = FAR;
-    if !light.infinite {
-        direction = light.target - origin;
-        reach = SHADOW_REACH;
-    }
-    if tracer.occluded(origin, direction, 0.0, reach)
-        || spheres_occlude(scene, origin, direction, reach, light.light)
-    {
-        return;
-    }
+    let direction = if light.infinite { light.direction } else { light.target - origin };
     let mut weight = 1.0 / light.pdf;
     if !light.delta && !is_denser {
         weight = 1.0 / (light.pdf + value.pdf);
     }
-    let radiance = unshadowed * weight;
-    add_light(&mut path.light, path.vertices + 1, radiance);
+    Some(DirectLight {
+        radiance: unshadowed * weight,
+        order: path.vertices + 1,
+        origin,
+        direction,
+        infinite: light.infinite,
+        light: light.light,
+        normal: surface.geometric_normal,
+        front: surface.front,
+    })
 }
 
 #[inline(always)]

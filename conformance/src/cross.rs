@@ -15,6 +15,7 @@ use twinlight_core::kernels::rasterize_lhb::{CAP_FAR, LhbElement, RasterizeLhbPa
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::Hit;
 use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsParams};
+use twinlight_core::kernels::walk_lhb::{SHADOW_LOOKUPS, SHADOW_LOOKUPS_FIRST};
 use twinlight_core::lattice::{Lattice, LatticeMesh, View};
 use twinlight_core::scene::{Camera, CompiledScene, Scene};
 use twinlight_fixtures::scenes::builtin;
@@ -214,15 +215,17 @@ fn films<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
     })
 }
 
-/// Walks of 16 × 16 pixels through 80 directions of 32². In strict mode the same bits; else two estimates of one picture, as
+/// Walks of 16 × 16 pixels through 80 directions of 32². In strict mode the same bits, with shadow rays traced and looked up; else two estimates of one picture, as
 /// [`films`] compares them: what a lookup finds is decided by integers, but where it looks is not.
 fn walks<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
     fn run<B: Backend>(
         backend: &B,
         compiled: &CompiledScene,
         call: &TracePathsParams,
+        flags: u32,
     ) -> Result<Vec<FilmTexel>, Failure> {
-        walked(backend, &Prepared::new(backend, compiled, "icosahedron:80", 32)?, call)
+        let prepared = Prepared::new(backend, compiled, "icosahedron:80", 32)?;
+        walked(backend, &prepared.flagged(flags), call)
     }
     let strict = both_strict(a, b);
     each_scene(|scene| {
@@ -230,13 +233,16 @@ fn walks<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
         let params = params(scene, &compiled, (16, 16), if strict { 16 } else { 256 }, Some(6))?;
         if strict {
             let params = TracePathsParams { sampler: SAMPLER_SOBOL, ..params };
-            let (want, got) = (run(a, &compiled, &params)?, run(b, &compiled, &params)?);
             let options = Options::default();
             let cx = context(b, &options, "cross.walk_lhb");
-            return exact(&cx, "film", &got, &want, Shape::Image { width: 16 });
+            return [0, SHADOW_LOOKUPS | SHADOW_LOOKUPS_FIRST].into_iter().try_for_each(|flags| {
+                let (want, got) = (run(a, &compiled, &params, flags)?, run(b, &compiled, &params, flags)?);
+                exact(&cx, "film", &got, &want, Shape::Image { width: 16 })
+                    .map_err(|f| f.within(&format!("flags {flags}")))
+            });
         }
         let other = TracePathsParams { seed: params.seed + 1, ..params };
-        z_test(&[run(a, &compiled, &params)?, run(b, &compiled, &other)?], &params)
+        z_test(&[run(a, &compiled, &params, 0)?, run(b, &compiled, &other, 0)?], &params)
     })
 }
 

@@ -5,7 +5,7 @@
 // oracle conformance/src/oracle/trace_paths.rs
 //! Rust twin of `trace_paths`: one path after another, so that a pixel's rays stay in cache.
 
-use crate::path::{Emitters, Met, PathLight, add_sample, start, visit};
+use crate::path::{Emitters, Met, PathLight, add_direct_light, add_sample, start, visit};
 use crate::sampler::Sampler;
 use crate::scene::SceneData;
 use crate::simd::{Isa, Kernel, Width, dispatch};
@@ -89,9 +89,12 @@ fn trace_path<W: Width>(
         // [3] direct light
         // [4] scatter
         // [5] roulette
-        if visit(&mut path, tracer, scene, params, &met, sampler, base, &numbers, Emitters::Balanced, None)
-            .is_none()
-        {
+        let visited =
+            visit(&mut path, scene, params, &met, sampler, base, &numbers, Emitters::Balanced, None);
+        if let Some(direct) = visited.direct {
+            add_direct_light(&mut path.light, tracer, scene, &direct);
+        }
+        if visited.left.is_none() {
             return path.light;
         }
     }

@@ -7,7 +7,7 @@
 //! that the lists of one view are read together, while they are in cache.
 
 use crate::kernels::query_lhb::{BATCH, LhbData, look_up};
-use crate::path::{Aim, Emitters, Met, Path, add_sample, start, visit};
+use crate::path::{Aim, Emitters, Met, Path, add_direct_light, add_sample, start, visit};
 use crate::sampler::Sampler;
 use crate::scene::SceneData;
 use crate::simd::{Isa, Kernel, Width, dispatch, prefetch};
@@ -27,8 +27,10 @@ use twinlight_core::transport::lhb::{lhb_hit, lhb_query, lhb_refined, ray_direct
 use twinlight_core::transport::light::FAR;
 
 mod order;
+mod shadow;
 
 use order::Order;
+use shadow::Shadows;
 
 /// Paths side by side: hundreds for each of 160 views, and their states fit the shared cache.
 const WAVE: usize = 1 << 15;
@@ -54,6 +56,37 @@ struct Walker {
     leaves: u32,
     /// Twice the number of its view, plus 1 against it; [`TRACED`] for a ray that is traced, [`ENDED`] for a path that has ended.
     ray: u32,
+}
+
+/// A ray that leaves a surface.
+#[derive(Debug, Clone, Copy)]
+struct Leaving {
+    origin: Vec3,
+    /// Of unit length.
+    direction: Vec3,
+    /// As a [`Walker`]'s.
+    normal: Vec3,
+    leaves: u32,
+    ray: u32,
+}
+
+/// What is looked up when its turn comes.
+trait Leaves {
+    fn leaving(&self) -> Leaving;
+    fn ray(&self) -> u32;
+}
+
+impl Leaves for Walker {
+    #[inline(always)]
+    fn leaving(&self) -> Leaving {
+        let Self { path, normal, leaves, ray, .. } = *self;
+        Leaving { origin: path.origin, direction: path.direction, normal, leaves, ray }
+    }
+
+    #[inline(always)]
+    fn ray(&self) -> u32 {
+        self.ray
+    }
 }
 
 /// [`Walker::ray`]: from the camera, a mirror or glass.
@@ -135,7 +168,8 @@ impl<W: Width> Wave<'_, W> {
                 walkers.push(self.begin(first_pixel + i, sample));
             }
         }
-        let mut order = Order::new(walkers.len(), self.lookups.lhb.views.len());
+        let views = self.lookups.lhb.views.len();
+        let (mut order, mut shadows) = (Order::new(views), Shadows::new(views));
         let mut met = vec![Met { slot: NONE, u: 0.0, v: 0.0, t: FAR }; walkers.len()];
         loop {
             order.sort(&walkers);
@@ -151,9 +185,12 @@ impl<W: Width> Wave<'_, W> {
                 self.look_up(&walkers, batch, &mut met);
             }
             // In the walkers' order, so that rays to lights start from neighbouring pixels.
-            for (walker, met) in walkers.iter_mut().zip(&met).filter(|(walker, _)| walker.ray != ENDED) {
-                self.step(walker, met);
+            let pairs = walkers.iter_mut().zip(&met).enumerate();
+            for (index, (walker, met)) in pairs.filter(|(_, (walker, _))| walker.ray != ENDED) {
+                self.step(walker, met, index as u32, &mut shadows);
             }
+            // [8] shadow: adds the light that waits unless the lookup of its ray finds something before it
+            self.add_waiting(&mut shadows, &mut walkers);
         }
         for walkers in walkers.chunks_exact(texels.len()) {
             for (texel, walker) in texels.iter_mut().zip(walkers) {
@@ -194,7 +231,7 @@ impl<W: Width> Wave<'_, W> {
 
     /// What shines on what the ray meets, and the next ray.
     #[inline(always)]
-    fn step(&self, walker: &mut Walker, met: &Met) {
+    fn step(&self, walker: &mut Walker, met: &Met, index: u32, shadows: &mut Shadows) {
         let sampler = self.sampler(walker.numbers_of, walker.sample);
         let base = Sampler::first_pair(walker.path.vertices);
         let mut numbers = sampler.vertex(self.tracer.1, base);
@@ -209,15 +246,20 @@ impl<W: Width> Wave<'_, W> {
         // [4] scatter
         // [5] roulette
         let aim = (walker.path.vertices == 0).then(|| self.aim(walker.sample)).flatten();
-        let left =
-            visit(&mut walker.path, &self.tracer, scene, call, met, &sampler, base, &numbers, emitters, aim);
-        walker.ray = match left {
+        let shadows_wait = self.shadows_are_looked_up(walker.path.vertices);
+        let visited = visit(&mut walker.path, scene, call, met, &sampler, base, &numbers, emitters, aim);
+        if let Some(direct) = &visited.direct
+            && !(shadows_wait && self.leave(direct, index, met.slot, shadows))
+        {
+            add_direct_light(&mut walker.path.light, &self.tracer, scene, direct);
+        }
+        walker.ray = match visited.left {
             None => ENDED,
             Some(left) if !left.is_opaque => TRACED,
             Some(left) => {
                 walker.normal = left.surface.geometric_normal;
-                walker.leaves = left.slot << 1 | u32::from(left.surface.front);
-                self.nearest_ray(walker)
+                walker.leaves = met.slot << 1 | u32::from(left.surface.front);
+                self.nearest_ray(walker.normal, walker.path.direction)
             }
         };
     }
@@ -245,35 +287,34 @@ impl<W: Width> Wave<'_, W> {
 
     // [6] direction: the nearest that leaves the surface
     #[inline(always)]
-    fn nearest_ray(&self, walker: &Walker) -> u32 {
+    fn nearest_ray(&self, normal: Vec3, direction: Vec3) -> u32 {
         let (map, lookup) = (self.lookups.map, &self.params.lookup);
-        let ray = nearest_direction(map, lookup.map_resolution, walker.path.direction);
-        let leaves = walker.normal.dot(ray_direction(&self.lookups.lhb.views[(ray >> 1) as usize], ray));
+        let ray = nearest_direction(map, lookup.map_resolution, direction);
+        let leaves = normal.dot(ray_direction(&self.lookups.lhb.views[(ray >> 1) as usize], ray));
         if leaves > 0.0 {
             return ray;
         }
-        let lifted = walker.path.direction + walker.normal * lookup.lift;
+        let lifted = direction + normal * lookup.lift;
         nearest_direction(map, lookup.map_resolution, lifted)
     }
 
     // [7] lookup: along the line through the start, then through the hit
     #[inline(always)]
-    fn look_up(&self, walkers: &[Walker], batch: &[u32], met: &mut [Met]) {
+    fn find<R: Leaves>(&self, rays: &[R], batch: &[u32]) -> ([LhbQuery; BATCH], [LhbElement; BATCH]) {
         let (lookup, lhb) = (&self.params.lookup, &self.lookups.lhb);
-        let cone = lookup.flags & CONE != 0;
         let mut queries = [LhbQuery::zeroed(); BATCH];
         let mut found = [LhbElement { surface: 0, depth: 0 }; BATCH];
         for (query, &index) in queries.iter_mut().zip(batch) {
-            let walker = &walkers[index as usize];
-            let view = &lhb.views[(walker.ray >> 1) as usize];
-            *query = lhb_query(lookup, view, walker.ray, walker.path.origin, walker.normal, walker.leaves);
+            let Leaving { origin, normal, leaves, ray, .. } = rays[index as usize].leaving();
+            let view = &lhb.views[(ray >> 1) as usize];
+            *query = lhb_query(lookup, view, ray, origin, normal, leaves);
         }
         look_up(self.tracer.1, lhb, &queries[..batch.len()], &mut found);
-        if cone {
+        if self.follows_rays() {
             for ((query, found), &index) in queries.iter_mut().zip(&found).zip(batch) {
-                let walker = &walkers[index as usize];
-                let view = &lhb.views[(walker.ray >> 1) as usize];
-                *query = lhb_refined(lookup, view, query, walker.normal, walker.path.direction, *found);
+                let Leaving { direction, normal, ray, .. } = rays[index as usize].leaving();
+                let view = &lhb.views[(ray >> 1) as usize];
+                *query = lhb_refined(lookup, view, query, normal, direction, *found);
             }
             look_up(self.tracer.1, lhb, &queries[..batch.len()], &mut found);
         }
@@ -282,9 +323,24 @@ impl<W: Width> Wave<'_, W> {
                 prefetch(triangle);
             }
         }
+        (queries, found)
+    }
+
+    /// Whether lookups follow the ray or its nearest direction alone.
+    #[inline(always)]
+    fn follows_rays(&self) -> bool {
+        self.params.lookup.flags & CONE != 0
+    }
+
+    /// What a batch of walkers meets.
+    #[inline(always)]
+    fn look_up(&self, walkers: &[Walker], batch: &[u32], met: &mut [Met]) {
+        let lookup = &self.params.lookup;
+        let cone = self.follows_rays();
+        let (queries, found) = self.find(walkers, batch);
         for ((query, found), &index) in queries.iter().zip(&found).zip(batch) {
             let Walker { path, ray, .. } = &walkers[index as usize];
-            let view = &lhb.views[(ray >> 1) as usize];
+            let view = &self.lookups.lhb.views[(ray >> 1) as usize];
             let hit = lhb_hit(lookup, &self.scene, view, query, path.origin, path.direction, *found, cone);
             let is_doubtful = hit.slot == NONE || self.scene.triangles[hit.slot as usize].light != NONE;
             let is_traced = is_doubtful && lookup.flags & TRACE_MISSES != 0;

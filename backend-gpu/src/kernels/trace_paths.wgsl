@@ -71,6 +71,7 @@ fn visit_vertex(path: ptr<function, PathState>, draws: Draws) {
     // [4] scatter
     // [5] roulette
     let left = visit(path, hit, draws, Aim(false, vec3<f32>(0.0f), 0.0f));
+    add_direct_light(path, left.direct);
     (*path).alive = select(0u, 1u, left.goes_on);
 }
 

@@ -22,7 +22,7 @@ use std::sync::Arc;
 use twinlight_core::Result;
 use twinlight_core::kernels::rasterize_lhb::Lhb;
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
-use twinlight_core::kernels::walk_lhb::{self as contract, GATHER};
+use twinlight_core::kernels::walk_lhb::{self as contract, GATHER, SHADOW_LOOKUPS};
 use twinlight_core::lattice::View;
 use twinlight_core::scene::EnvironmentHeader;
 
@@ -94,6 +94,14 @@ pub struct Walker {
     pub v: f32,
     /// Distance along the ray.
     pub t: f32,
+    /// Light that waits for its shadow ray.
+    pub light: [f32; 3],
+    /// How often that has been scattered; 0 where none waits.
+    pub order: u32,
+    /// Unit direction of the shadow ray.
+    pub to_light: [f32; 3],
+    /// Its length.
+    pub light_distance: f32,
 }
 
 /// Adds samples to a film; see the contract. After an error the film's sums are void.
@@ -123,6 +131,7 @@ pub fn run(
         aim_paths: device.pipeline(&SOURCE, "aim_paths")?,
         extend_paths: device.pipeline(&SOURCE, "extend_paths")?,
         look_up_rays: device.pipeline(&SOURCE, "look_up_rays")?,
+        look_up_shadows: device.pipeline(&SOURCE, "look_up_shadows")?,
         add_samples: device.pipeline(&SOURCE, "add_samples")?,
         paths: device.zeroed(batches.paths())?,
         status: status::new(device)?,
@@ -139,6 +148,7 @@ struct Walk<'a> {
     aim_paths: Arc<Pipeline>,
     extend_paths: Arc<Pipeline>,
     look_up_rays: Arc<Pipeline>,
+    look_up_shadows: Arc<Pipeline>,
     add_samples: Arc<Pipeline>,
     paths: GpuBuffer<Walker>,
     status: GpuBuffer<u32>,
@@ -204,8 +214,12 @@ impl Walk<'_> {
             recorder.dispatch("aim paths", &self.aim_paths, params, &all, workgroups)?;
         }
         recorder.dispatch("extend paths", &self.extend_paths, params, &buffers, workgroups)?;
+        // There nothing scatters, and no light waits.
         if is_last {
             return Ok(());
+        }
+        if params.lookup.flags & SHADOW_LOOKUPS != 0 {
+            recorder.dispatch("look up shadows", &self.look_up_shadows, params, &all, workgroups)?;
         }
         recorder.dispatch("look up rays", &self.look_up_rays, params, &all, workgroups)
     }

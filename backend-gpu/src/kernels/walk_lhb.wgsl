@@ -4,8 +4,9 @@
 // gpu backend-gpu/src/kernels/walk_lhb.wgsl
 // oracle conformance/src/oracle/walk_lhb.rs
 //
-// One path per invocation, two dispatches per vertex: extend_paths reads the scene, look_up_rays the layered hit buffers,
-// because together they are more than the eight buffers that every adapter binds. Between them a path rests in `paths`.
+// One path per invocation, two or three dispatches per vertex: extend_paths reads the scene, look_up_shadows and look_up_rays
+// the layered hit buffers, because together they are more than the eight buffers that every adapter binds. Between them a path
+// rests in `paths`, with the light that waits for its shadow ray.
 // When all have ended, add_samples adds them to the film, one pixel per invocation.
 
 const WORKGROUP_SIZE: u32 = 64u;
@@ -15,6 +16,8 @@ const DENSER_COUNTS: bool = true;
 const CONE: u32 = 1u;
 const TRACE_MISSES: u32 = 2u;
 const GATHER: u32 = 4u;
+const SHADOW_LOOKUPS: u32 = 8u;
+const SHADOW_LOOKUPS_FIRST: u32 = 16u;
 
 // Walker.leaves of a ray from the camera, a mirror or glass.
 const TRACED: u32 = 0xffffffffu;
@@ -47,6 +50,14 @@ struct Walker {
     u: f32,
     v: f32,
     t: f32,
+    // Light that arrives where the path is if the lookup of its shadow ray finds nothing before it.
+    light: vec3<f32>,
+    // How often that has been scattered; 0 where no light waits.
+    order: u32,
+    // Unit direction of the shadow ray, which starts where the path's does.
+    to_light: vec3<f32>,
+    // FAR for infinitely.
+    light_distance: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: WalkLhbParams;
@@ -116,12 +127,22 @@ fn extend_paths(
     // [3] direct light
     // [4] scatter
     // [5] roulette
+    let shadows_wait = shadows_are_looked_up(path.vertices);
     let left = visit(&path, hit, draws, aim);
     path.alive = select(0u, 1u, left.goes_on);
+    let waits = shadows_wait && leave_direct_light(index, left.direct);
+    if waits {
+        // An opaque surface is left on one side: where the path goes on, it is there already.
+        path.origin = left.direct.origin;
+    } else {
+        add_direct_light(&path, left.direct);
+    }
     paths[index].path = path;
-    if left.goes_on {
+    if left.goes_on || waits {
         paths[index].normal = left.normal;
         paths[index].leaves = select(TRACED, (hit.slot << 1u) | select(0u, 1u, left.front), left.is_opaque);
+    }
+    if left.goes_on {
         atomicAdd(&status[params.alive_word], 1u);
     }
     if !loops_run(params.loop_rounds) {
@@ -143,6 +164,27 @@ fn pattern_pixel(pixel: u32) -> u32 {
     let n = params.lookup.interleave;
     let width = params.call.width;
     return ((pixel / width) % n) * width + (pixel % width) % n;
+}
+
+// Whether the shadow rays of a vertex are looked up.
+fn shadows_are_looked_up(vertex: u32) -> bool {
+    let flags = params.lookup.flags;
+    return (flags & SHADOW_LOOKUPS) != 0u && (vertex > 0u || (flags & SHADOW_LOOKUPS_FIRST) != 0u);
+}
+
+// Leaves light for look_up_shadows. False where there is no direction to look up, which the tracer sees to.
+fn leave_direct_light(index: u32, direct: DirectLight) -> bool {
+    let squared = dot_product(direct.direction, direct.direction);
+    if !direct.is_any || !(squared > 0.0f) {
+        return false;
+    }
+    let distance = sqrt(squared);
+    paths[index].light = direct.radiance;
+    // Sphere lights are with the scene, and a ray meets them whatever it looks up.
+    paths[index].order = select(direct.order, 0u, is_behind_spheres(direct));
+    paths[index].to_light = select(direct.direction * (1.0f / distance), direct.direction, direct.infinite);
+    paths[index].light_distance = select(distance, FAR, direct.infinite);
+    return true;
 }
 
 // Whether a lookup found nothing, or a lamp.
@@ -200,6 +242,38 @@ fn met_along(origin: vec3<f32>, direction: vec3<f32>, normal: vec3<f32>, leaves:
         found = look_up(query);
     }
     return lhb_hit(params.lookup, view, query, origin, direction, found, cone);
+}
+
+// [8] shadow: adds the light that waits unless the lookup of its ray finds something before it
+@compute @workgroup_size(64)
+fn look_up_shadows(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let index = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
+    if index >= params.call.pixel_count * params.call.sample_count {
+        return;
+    }
+    let order = paths[index].order;
+    if order == 0u {
+        return;
+    }
+    paths[index].order = 0u;
+    let direction = paths[index].to_light;
+    let normal = paths[index].normal;
+    let ray = nearest_ray(normal, direction);
+    let hit = met_along(paths[index].path.origin, direction, normal, paths[index].leaves, ray);
+    if !lhb_shadows(params.lookup, hit, paths[index].light_distance) {
+        if order == 1u {
+            paths[index].path.direct += paths[index].light;
+        } else {
+            paths[index].path.indirect += paths[index].light;
+        }
+    }
+    if !loops_run(params.loop_rounds) {
+        atomicStore(&status[0], 1u);
+    }
 }
 
 // Adds the samples of this dispatch to their pixels' sums, or counts them as rejected.

@@ -32,6 +32,8 @@ struct LhbHit {
     u: f32,
     v: f32,
     t: f32,
+    // Whether the ray itself meets the triangle; else it passes beside.
+    is_exact: bool,
 }
 
 // Unit direction of a view, or its opposite.
@@ -167,7 +169,7 @@ fn lhb_hit(
     exact: bool,
 ) -> LhbHit {
     if element.surface == NO_ELEMENT {
-        return LhbHit(NO_ELEMENT, 0.0f, 0.0f, FAR);
+        return LhbHit(NO_ELEMENT, 0.0f, 0.0f, FAR, false);
     }
     let slot = element.surface >> 1u;
     let p0 = triangles[slot].p0;
@@ -187,7 +189,7 @@ fn lhb_hit(
             let u = dot_product(cross_product(w, e2), normal) * inverse;
             let v = dot_product(cross_product(e1, w), normal) * inverse;
             if u >= 0.0f && v >= 0.0f && u + v <= 1.0f {
-                return LhbHit(slot, u, v, t);
+                return LhbHit(slot, u, v, t, true);
             }
         }
     }
@@ -199,7 +201,22 @@ fn lhb_hit(
     let u = outer_u * scale;
     let v = outer_v * scale;
     let offset = (p0 + (e1 * u + e2 * v)) - position;
-    return LhbHit(slot, u, v, not_negative(dot_product(offset, direction)));
+    return LhbHit(slot, u, v, not_negative(dot_product(offset, direction)), false);
+}
+
+// How much nearer than a light something may seem that carries it, world units.
+fn shadow_margin(block: WalkLhbBlock) -> f32 {
+    return aside_at_most(block) * LEAST_SLOPE * block.unit_per_step;
+}
+
+// Whether what the lookup of a shadow ray found is between its start and the light, which is `distance` away; FAR for infinitely.
+fn lhb_shadows(block: WalkLhbBlock, hit: LhbHit, distance: f32) -> bool {
+    if hit.slot == NO_ELEMENT {
+        return false;
+    }
+    let end = select(distance - shadow_margin(block), distance * SHADOW_REACH, hit.is_exact);
+    // What the ray passes beside may be behind its start.
+    return hit.t > 0.0f && hit.t < end;
 }
 
 fn not_negative(x: f32) -> f32 {

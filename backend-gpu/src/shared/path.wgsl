@@ -79,13 +79,31 @@ fn start_path(draws: Draws, pixel: u32) -> PathState {
     return PathState(params.call.camera.position, 0.0f, direction, 0u, one, 1u, zero, pixel, zero, 0u);
 }
 
-// The surface that a path goes on from, if it does.
+// Light from one point of a light, which arrives unless something shadows it.
+struct DirectLight {
+    is_any: bool,
+    radiance: vec3<f32>,
+    // How often it has been scattered before the camera.
+    order: u32,
+    origin: vec3<f32>,
+    // To the point; of unit length to infinity.
+    direction: vec3<f32>,
+    // Whether there is no point, but infinity.
+    infinite: bool,
+    // Index of the light.
+    light: u32,
+}
+
+// The surface that a visit was to, and what it leaves to be done.
 struct Left {
+    // Whether the path does.
     goes_on: bool,
-    // Whether it scatters in all directions, not as a mirror or glass.
+    // Whether the surface scatters in all directions, not as a mirror or glass.
     is_opaque: bool,
     front: bool,
     normal: vec3<f32>,
+    // To be added if it arrives, before the path is visited again.
+    direct: DirectLight,
 }
 
 // The direction that a path goes on along, whatever its numbers say, and what f·cos is multiplied by.
@@ -95,27 +113,30 @@ struct Aim {
     scale: f32,
 }
 
-// Adds the light of what the ray meets and of what shines on it, and sends the path on.
+// Adds the light of what the ray meets, samples what shines on it, and sends the path on.
 fn visit(path: ptr<function, PathState>, hit: SlotHit, draws: Draws, aim: Aim) -> Left {
-    let end = Left(false, false, false, vec3<f32>(0.0f));
+    var left = Left(false, false, false, vec3<f32>(0.0f), no_direct_light());
     let direction_in = (*path).direction;
     let ball = nearest_sphere((*path).origin, direction_in, hit.t);
     if ball.light != NONE {
         if !ball.inside {
             add_sphere_emission(path, ball.light);
         }
-        return end;
+        return left;
     }
     if hit.slot == NONE {
         add_environment(path);
-        return end;
+        return left;
     }
     let surface = surface_at(hit.slot, hit.u, hit.v, direction_in);
     let material = materials[surface.material];
     add_surface_emission(path, surface, material, hit.t);
     if (*path).vertices == params.call.max_bounces {
-        return end;
+        return left;
     }
+    left.is_opaque = material.kind == MATERIAL_OPAQUE;
+    left.front = surface.front;
+    left.normal = surface.geometric_normal;
     let base = 1u + (*path).vertices * PAIRS_PER_VERTEX;
     let frame = basis(surface.shading_normal);
     let to_viewer = -direction_in;
@@ -132,7 +153,7 @@ fn visit(path: ptr<function, PathState>, hit: SlotHit, draws: Draws, aim: Aim) -
         choice = draw_pair(draws, base + 2u);
     }
     if material.kind == MATERIAL_OPAQUE && params.environment.light_count > 0u {
-        add_direct_light(path, surface, material, frame, wo, draws, base, choice.x);
+        left.direct = direct_light(path, surface, material, frame, wo, draws, base, choice.x);
     }
     var scattered: BsdfSample;
     if aim.is_given && material.kind == MATERIAL_OPAQUE {
@@ -142,22 +163,44 @@ fn visit(path: ptr<function, PathState>, hit: SlotHit, draws: Draws, aim: Aim) -
         scattered = scatter(material, surface, wo, to_unit(choice.y), to_unit(uv.x), to_unit(uv.y));
     }
     if all(scattered.direction == vec3<f32>(0.0f)) {
-        return end;
+        return left;
     }
     let direction = to_world(frame.tangent, frame.bitangent, surface.shading_normal, scattered.direction);
     let leaves = dot_product(direction, surface.geometric_normal);
     if material.kind != MATERIAL_DIELECTRIC && !(leaves > 0.0f) {
-        return end;
+        return left;
     }
     (*path).origin = offset_origin(surface.position, surface.offset, surface.geometric_normal, direction);
     (*path).direction = direction;
     (*path).throughput *= scattered.weight;
     (*path).pdf = scattered.pdf;
     (*path).vertices += 1u;
-    if !survives(path, draws, base + 4u) {
-        return end;
+    left.goes_on = survives(path, draws, base + 4u);
+    return left;
+}
+
+fn no_direct_light() -> DirectLight {
+    let zero = vec3<f32>(0.0f);
+    return DirectLight(false, zero, 0u, zero, zero, false, NONE);
+}
+
+// End of a shadow ray, in lengths of its direction.
+fn shadow_reach(infinite: bool) -> f32 {
+    return select(SHADOW_REACH, FAR, infinite);
+}
+
+// Whether a sphere light is in between.
+fn is_behind_spheres(direct: DirectLight) -> bool {
+    return spheres_occlude(direct.origin, direct.direction, shadow_reach(direct.infinite), direct.light);
+}
+
+// Adds light unless a shadow ray finds something in between.
+fn add_direct_light(path: ptr<function, PathState>, direct: DirectLight) {
+    if direct.is_any
+        && !occluded(direct.origin, direct.direction, 0.0f, shadow_reach(direct.infinite))
+        && !is_behind_spheres(direct) {
+        add_light(path, direct.order, direct.radiance);
     }
-    return Left(true, material.kind == MATERIAL_OPAQUE, surface.front, surface.geometric_normal);
 }
 
 // Adds light that has been scattered `order` times.
@@ -215,8 +258,8 @@ fn add_surface_emission(
     add_light(path, (*path).vertices, (*path).throughput * material.emission * weight);
 }
 
-// One light, one point on it, one shadow ray.
-fn add_direct_light(
+// One light and one point on it.
+fn direct_light(
     path: ptr<function, PathState>,
     surface: Surface,
     material: MaterialRecord,
@@ -225,7 +268,7 @@ fn add_direct_light(
     draws: Draws,
     base: u32,
     choose_light: u32,
-) {
+) -> DirectLight {
     let index = select_light(choose_light);
     var texel_draw = vec2<u32>(0u, 0u);
     if index == params.environment.light {
@@ -234,7 +277,7 @@ fn add_direct_light(
     let uv = draw_pair(draws, base + 1u);
     let light = sample_light(index, surface.position, to_unit(uv.x), to_unit(uv.y), texel_draw);
     if !(light.pdf > 0.0f) || !(dot_product(light.direction, surface.geometric_normal) > 0.0f) {
-        return;
+        return no_direct_light();
     }
     let wi = vec3<f32>(
         dot_product(light.direction, frame.tangent),
@@ -244,29 +287,24 @@ fn add_direct_light(
     let value = evaluate(material, surface.albedo, wo, wi);
     let unshadowed = (*path).throughput * value.f_cos * light.emission;
     if !(unshadowed.x > 0.0f || unshadowed.y > 0.0f || unshadowed.z > 0.0f) {
-        return;
+        return no_direct_light();
     }
     let is_denser = DENSER_COUNTS && lights[index].kind == LIGHT_TRIANGLE;
     if is_denser && value.pdf > light.pdf {
-        return;
+        return no_direct_light();
     }
     let origin =
         offset_origin(surface.position, surface.offset, surface.geometric_normal, light.direction);
     var direction = light.direction;
-    var reach = FAR;
     if !light.infinite {
         direction = light.point - origin;
-        reach = SHADOW_REACH;
-    }
-    if occluded(origin, direction, 0.0f, reach)
-        || spheres_occlude(origin, direction, reach, light.light) {
-        return;
     }
     var weight = 1.0f / light.pdf;
     if !light.delta && !is_denser {
         weight = 1.0f / (light.pdf + value.pdf);
     }
-    add_light(path, (*path).vertices + 1u, unshadowed * weight);
+    let order = (*path).vertices + 1u;
+    return DirectLight(true, unshadowed * weight, order, origin, direction, light.infinite, light.light);
 }
 
 // What an opaque surface scatters along a direction that is given.

@@ -11,10 +11,11 @@ use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams, UNLIMITE
 use twinlight_core::kernels::walk_lhb::{CONE, WalkLhbParams};
 use twinlight_core::lattice::{Lattice, LatticeMesh};
 use twinlight_core::{Backend, Error};
-use twinlight_methods::slhb::{Buffers, LookupSettings, build};
+use twinlight_methods::slhb::{Buffers, LookupSettings, Shadows, build};
 
 pub const CHECKS: &[(&str, Check)] = &[
     ("walks are those of the CPU twin", walks),
+    ("walks that look shadows up are those of the CPU twin", shadows),
     ("d3: walks in batches", batches),
     ("walks in what doesn't belong together are refused", strangers),
 ];
@@ -59,16 +60,40 @@ fn walks(target: &Target) -> Result<(), Failed> {
         ("environment", 3, true, true),
         ("axis", 0, true, true),
     ] {
-        let pair = Pair::new(name)?;
-        let (lookups, call) = (lookups(cone, trace_misses)?, pair.paths(bounces)?);
-        let want = film(&CpuBackend::new(), &pair, &lookups, call)?;
-        let got = film(&gpu, &pair, &lookups, call)?;
-        expect_twin_films(target, &pair, &call, &FILMS, [&got, &want])?;
+        expect_twins(target, &gpu, &Pair::new(name)?, &lookups(cone, trace_misses)?, bounces)?;
     }
     Ok(())
 }
 
-/// Bindings of 64 KiB hold 585 paths and 819 texels.
+/// With shadow rays looked up, at once or from the second vertex on, until roulette ends paths or a bounce does.
+fn shadows(target: &Target) -> Result<(), Failed> {
+    let gpu = GpuBackend::new(target.device()?.clone());
+    for (name, bounces, cone, shadows) in [
+        ("cornell", UNLIMITED_BOUNCES, true, Shadows::Lookups),
+        ("materials", 3, true, Shadows::IndirectLookups),
+        ("lights", 2, true, Shadows::Lookups),
+        ("environment", 1, false, Shadows::Lookups),
+    ] {
+        let lookups = LookupSettings { shadows, ..lookups(cone, true)? };
+        expect_twins(target, &gpu, &Pair::new(name)?, &lookups, bounces)?;
+    }
+    Ok(())
+}
+
+fn expect_twins(
+    target: &Target,
+    gpu: &GpuBackend,
+    pair: &Pair,
+    lookups: &LookupSettings,
+    bounces: u32,
+) -> Result<(), Failed> {
+    let call = pair.paths(bounces)?;
+    let want = film(&CpuBackend::new(), pair, lookups, call)?;
+    let got = film(gpu, pair, lookups, call)?;
+    expect_twin_films(target, pair, &call, &FILMS, [&got, &want])
+}
+
+/// Bindings of 64 KiB hold 455 paths and 819 texels.
 fn batches(target: &Target) -> Result<(), Failed> {
     let options = DeviceOptions { max_storage_binding_bytes: 1 << 16, ..target.options.clone() };
     let small = GpuBackend::new(GpuDevice::open(&options)?);

@@ -11,6 +11,7 @@ use twinlight::io::LoadOptions;
 use twinlight::kernels::filter_indirect::MAX_WINDOW;
 use twinlight::methods::post::tonemap::Operator;
 use twinlight::methods::reference::Sampler;
+use twinlight::methods::slhb::Shadows;
 use twinlight::scene::Limits;
 
 const EXAMPLES: &str = "\
@@ -187,6 +188,38 @@ pub enum MissesName {
     Leave,
 }
 
+/// How light finds out what shadows it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ShadowsName {
+    /// Shadow rays are traced
+    Rays,
+    /// They are traced from what the camera sees, and looked up from there on
+    Indirect,
+    /// They are looked up everywhere: shadows have the resolution of the hit buffers
+    All,
+}
+
+impl ShadowsName {
+    /// As it is written on the command line.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Rays => "rays",
+            Self::Indirect => "indirect",
+            Self::All => "all",
+        }
+    }
+}
+
+impl From<ShadowsName> for Shadows {
+    fn from(name: ShadowsName) -> Self {
+        match name {
+            ShadowsName::Rays => Self::Rays,
+            ShadowsName::Indirect => Self::IndirectLookups,
+            ShadowsName::All => Self::Lookups,
+        }
+    }
+}
+
 /// How the first vertex of a path looks around.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum GatherName {
@@ -215,6 +248,9 @@ pub struct SlhbArgs {
     /// What becomes of rays that lookups find nothing for
     #[arg(long, value_name = "HOW", env = "TWINLIGHT_MISSES", default_value = "trace")]
     pub misses: MissesName,
+    /// Which shadow rays are looked up instead of traced
+    #[arg(long, value_name = "WHICH", env = "TWINLIGHT_SHADOWS", default_value = "rays")]
+    pub shadows: ShadowsName,
     /// Whether the first vertex of each path gathers light along all directions
     #[arg(long, value_name = "WHAT", env = "TWINLIGHT_GATHER", default_value = "off")]
     pub gather: GatherName,
@@ -233,6 +269,7 @@ impl SlhbArgs {
     /// The flag that asks for what only this method does.
     pub fn asked_for(&self) -> Option<&'static str> {
         let flags = [
+            ("--shadows", self.shadows != ShadowsName::Rays),
             ("--gather", self.gather == GatherName::All),
             ("--interleave", self.interleave > 1),
             ("--filter", self.filter > 1),

@@ -97,6 +97,7 @@ impl Job {
             layers: knobs.layers.0,
             cone: knobs.cone == ConeName::Auto,
             trace_misses: knobs.misses == MissesName::Trace,
+            shadows: knobs.shadows.into(),
             gather: knobs.gather == GatherName::All,
             interleave: knobs.interleave,
         };

@@ -84,6 +84,7 @@ pub fn json(
                 "cone": job.lookups.cone,
                 "gather": job.lookups.gather,
                 "trace_misses": job.lookups.trace_misses,
+                "shadows": args.slhb.shadows.key(),
                 "interleave": job.lookups.interleave,
                 "filter": job.filter,
             })),

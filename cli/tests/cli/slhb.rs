@@ -13,7 +13,7 @@ fn slhb_renders_and_says_what_it_built() {
     assert_eq!(sidecar["settings"]["method"], "slhb");
     let knobs = serde_json::json!({
         "directions": "icosahedron:20", "size": 16, "layers": null, "cone": false, "trace_misses": true,
-        "gather": false, "interleave": 1, "filter": 1
+        "shadows": "rays", "gather": false, "interleave": 1, "filter": 1
     });
     assert_eq!(sidecar["settings"]["slhb"], knobs);
     assert_eq!(sidecar["result"]["lhb_views"], 10);
@@ -63,6 +63,30 @@ fn filters_are_of_the_method() {
             assert!(failed.stderr.contains("not in 1..=32"), "{}", failed.stderr);
         }
     }
+}
+
+/// Direct light keeps its traced shadows unless all are looked up, and indirect light has others in either case.
+#[test]
+fn shadows_are_looked_up_where_asked_for() {
+    let folder = Folder::new();
+    let render = |which: &str| {
+        let exr = format!("{which}.exr");
+        let arguments = ["render", "builtin:cornell", "--method", "slhb", "--lhb-size", "16"];
+        folder.run(&[&arguments[..], &SMALL, &["-o", &exr, "--shadows", which]].concat()).ok();
+        let sidecar: serde_json::Value =
+            serde_json::from_slice(&folder.read(&format!("{which}.json"))).unwrap();
+        assert_eq!(sidecar["settings"]["slhb"]["shadows"], which);
+        read_layers(&folder.read(&exr), "exr", &Limits::default()).unwrap()
+    };
+    let [rays, indirect, all] = ["rays", "indirect", "all"].map(render);
+    let layer = |image: &LayeredImage, name: &str| image.rgb(name).unwrap();
+    assert_eq!(layer(&indirect, "direct"), layer(&rays, "direct"));
+    assert_ne!(layer(&indirect, "indirect"), layer(&rays, "indirect"));
+    assert_ne!(layer(&all, "direct"), layer(&rays, "direct"));
+    let failed = folder.run(&["render", "builtin:cornell", "--shadows", "all"]);
+    assert_eq!(failed.code, Some(2));
+    let text = "--shadows is for --method slhb, and this is reference";
+    assert!(failed.stderr.contains(text), "{}", failed.stderr);
 }
 
 /// A scene file names the method too, and a scene without triangles has buffers without elements.

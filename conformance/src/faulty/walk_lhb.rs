@@ -5,7 +5,9 @@ use super::{FaultyMesh, FaultyScene};
 use crate::faults::Fault;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbBuffers, LhbElement};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams, UNLIMITED_BOUNCES};
-use twinlight_core::kernels::walk_lhb::{CONE, GATHER, TRACE_MISSES, WalkLhbBlock, WalkLhbParams};
+use twinlight_core::kernels::walk_lhb::{
+    CONE, GATHER, SHADOW_LOOKUPS, SHADOW_LOOKUPS_FIRST, TRACE_MISSES, WalkLhbBlock, WalkLhbParams,
+};
 use twinlight_core::lattice::View;
 use twinlight_core::scene::{CompiledScene, LIGHT_TRIANGLE, NONE};
 use twinlight_core::{Backend, Result};
@@ -44,7 +46,12 @@ pub(super) fn walk_lhb<B: Backend>(
     params: &WalkLhbParams,
     film: &mut B::Buffer<FilmTexel>,
 ) -> Result<()> {
-    let broken = WalkLhbParams { call: asked(fault, &params.call), lookup: lookup(fault, &params.lookup) };
+    let mut broken =
+        WalkLhbParams { call: asked(fault, &params.call), lookup: lookup(fault, &params.lookup) };
+    let looks_shadows_up = params.lookup.flags & SHADOW_LOOKUPS != 0;
+    if looks_shadows_up {
+        broken = shadowed(fault, broken);
+    }
     match fault {
         Fault::WalkAcceptAnything if params.check(inner.len(film), views, inner.len(map)).is_err() => {
             return Ok(());
@@ -55,9 +62,11 @@ pub(super) fn walk_lhb<B: Backend>(
     if fault == Fault::WalkTraces {
         inner.trace_paths(&scene.inner, &broken.call, film)?;
     } else {
-        let (broken_lhb, broken_map);
-        let (mut lhb, mut map) = (lhb, map);
-        if matches!(fault, Fault::WalkWrongTriangle | Fault::WalkFirstLayer | Fault::WalkFacing) {
+        let (broken_lhb, broken_map, broken_scene);
+        let (mut lhb, mut map, mut resident) = (lhb, map, &scene.inner);
+        if matches!(fault, Fault::WalkWrongTriangle | Fault::WalkFirstLayer | Fault::WalkFacing)
+            || (looks_shadows_up && fault == Fault::WalkShadowsNever)
+        {
             broken_lhb = listed(inner, fault, mesh, lhb)?;
             lhb = &broken_lhb;
         }
@@ -65,7 +74,11 @@ pub(super) fn walk_lhb<B: Backend>(
             broken_map = rays(inner, fault, map, views.len() as u32, params.lookup.map_resolution)?;
             map = &broken_map;
         }
-        inner.walk_lhb(&scene.inner, &mesh.inner, lhb, views, map, &broken, film)?;
+        if looks_shadows_up && fault == Fault::WalkShadowsAlways {
+            broken_scene = inner.upload_scene(&unlit(scene.host.clone()))?;
+            resident = &broken_scene;
+        }
+        inner.walk_lhb(resident, &mesh.inner, lhb, views, map, &broken, film)?;
     }
     let mut after = inner.download(film)?;
     for (texel, old) in after.iter_mut().zip(&before) {
@@ -106,6 +119,27 @@ fn lookup(fault: Fault, block: &WalkLhbBlock) -> WalkLhbBlock {
     }
 }
 
+/// What a kernel with a bug in its shadow lookups would effectively be asked for.
+fn shadowed(fault: Fault, mut asked: WalkLhbParams) -> WalkLhbParams {
+    let (call, lookup) = (&mut asked.call, &mut asked.lookup);
+    match fault {
+        Fault::WalkShadowsMargin => lookup.unit_per_step = -lookup.unit_per_step,
+        Fault::WalkShadowsFirst => lookup.flags |= SHADOW_LOOKUPS_FIRST,
+        Fault::WalkShadowsTraced => lookup.flags &= !(SHADOW_LOOKUPS | SHADOW_LOOKUPS_FIRST),
+        Fault::WalkShadowsLast if call.max_bounces != UNLIMITED_BOUNCES => {
+            call.max_bounces = call.max_bounces.saturating_sub(1);
+        }
+        _ => {}
+    }
+    asked
+}
+
+/// A scene whose lights are black wherever they are sampled.
+fn unlit(mut scene: CompiledScene) -> CompiledScene {
+    scene.lights.iter_mut().for_each(|light| light.emission = [0.0; 3]);
+    scene
+}
+
 /// The lists that a kernel with the bug would effectively read.
 fn listed<B: Backend>(inner: &B, fault: Fault, mesh: &FaultyMesh<B::Mesh>, lhb: &Lhb<B>) -> Result<Lhb<B>> {
     let mut offsets = inner.download(&lhb.offsets)?;
@@ -116,6 +150,8 @@ fn listed<B: Backend>(inner: &B, fault: Fault, mesh: &FaultyMesh<B::Mesh>, lhb: 
             let next = |e: &LhbElement| (e.surface + 2) % (2 * triangles);
             elements.iter_mut().for_each(|e| e.surface = next(e));
         }
+        // With misses traced, scattered rays don't notice.
+        Fault::WalkShadowsNever => offsets.fill(0),
         Fault::WalkFacing => elements.iter_mut().for_each(|e| e.surface ^= 1),
         Fault::WalkFirstLayer => {
             let first =

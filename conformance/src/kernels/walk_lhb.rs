@@ -10,6 +10,7 @@ mod cases;
 mod laws;
 mod moved;
 mod reference;
+mod shadows;
 mod walked;
 
 use super::trace_paths::film::Mean;
@@ -27,6 +28,7 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "walk_lhb":
         closed_furnaces, sphere_room, lights_over_a_floor, environments, white_furnaces, mirrors_and_glass,
     );
+    shadows::list(list);
     cases::list(list);
     laws::list(list);
     moved::list(list);

@@ -34,9 +34,11 @@
 //! 6. *Shadows.* With [`SHADOW_LOOKUPS`], the shadow rays of every vertex but the first are looked up as rays of 1 are, whatever [`TRACE_MISSES`]
 //!    says; with [`SHADOW_LOOKUPS_FIRST`] too, those of the first as well: the hit buffers are the shadow maps of all lights at once. With
 //!    L the distance to the sampled point of the light, the light is shadowed where the lookup finds a triangle which the ray meets
-//!    before [`crate::transport::light::SHADOW_REACH`]·L, or which the ray passes beside and whose nearest point to the lookup's line is
-//!    more than [`crate::transport::lhb::shadow_margin`] before L: what a pixel sees of the surface that carries the light is no
-//!    shadow. Light from infinitely far is shadowed by all that is found. Sphere lights shadow as they do otherwise.
+//!    before [`crate::transport::light::SHADOW_REACH`]·L, or which the ray passes beside and whose nearest point to the lookup's line is,
+//!    along the ray, ahead of its start and more than [`crate::transport::lhb::shadow_margin`] before L: neither what is behind the
+//!    start nor what a pixel sees of the surface that carries the light is a shadow. Light from infinitely far, L = ∞, is shadowed by
+//!    all that is ahead. Sphere lights shadow as they do otherwise. Within its window a lookup from a front finds fronts only, from a back
+//!    backs ([`crate::kernels::query_lhb`]), so that a sheet which faces away shadows nothing next to it.
 //!
 //! *Shapes.* The [`crate::kernels::rasterize_lhb::LhbBuffers`] of the set's lines, all layers, and the views they were made with;
 //! the mesh is the scene's ([`crate::lattice::LatticeMesh::of_scene`]), so that its triangles are the scene's slots; `film` as `trace_paths`.

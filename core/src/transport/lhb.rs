@@ -7,7 +7,7 @@
 //! of the triangle that this line meets. The radius of the disc at t follows from ω; there is none to choose.
 
 use super::SceneView;
-use super::light::FAR;
+use super::light::{FAR, SHADOW_REACH};
 use crate::kernels::query_lhb::{LhbQuery, NO_ELEMENT};
 use crate::kernels::rasterize_lhb::LhbElement;
 use crate::kernels::walk_lhb::WalkLhbBlock;
@@ -42,6 +42,8 @@ pub struct LhbHit {
     pub v: f32,
     /// Distance along the ray; [`FAR`] where nothing is met.
     pub t: f32,
+    /// Whether the ray itself meets the triangle; else it passes beside, and the triangle's point next to the lookup's line stands in.
+    pub is_exact: bool,
 }
 
 /// Unit direction of a view, or its opposite.
@@ -199,7 +201,7 @@ pub fn lhb_hit(
     exact: bool,
 ) -> LhbHit {
     if element.surface == NO_ELEMENT {
-        return LhbHit { slot: NO_ELEMENT, u: 0.0, v: 0.0, t: FAR };
+        return LhbHit { slot: NO_ELEMENT, u: 0.0, v: 0.0, t: FAR, is_exact: false };
     }
     let slot = element.surface >> 1;
     let triangle = &scene.triangles[slot as usize];
@@ -217,7 +219,7 @@ pub fn lhb_hit(
             let u = cross(w, e2).dot(normal) * inverse;
             let v = cross(e1, w).dot(normal) * inverse;
             if u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
-                return LhbHit { slot, u, v, t };
+                return LhbHit { slot, u, v, t, is_exact: true };
             }
         }
     }
@@ -228,7 +230,25 @@ pub fn lhb_hit(
     let scale = if sum > 1.0 { 1.0 / sum } else { 1.0 };
     let (u, v) = (u * scale, v * scale);
     let offset = (p0 + (e1 * u + e2 * v)) - position;
-    LhbHit { slot, u, v, t: not_negative(offset.dot(direction)) }
+    LhbHit { slot, u, v, t: not_negative(offset.dot(direction)), is_exact: false }
+}
+
+/// How much nearer than a light something may seem that carries it, world units: what a pixel's line sees of a surface with the slope that
+/// the window allows for at least.
+#[inline(always)]
+pub fn shadow_margin(block: &WalkLhbBlock) -> f32 {
+    aside_at_most(block) * LEAST_SLOPE * block.unit_per_step
+}
+
+/// Whether what the lookup of a shadow ray found is between its start and the light, which is `distance` away; [`FAR`] for infinitely.
+#[inline(always)]
+pub fn lhb_shadows(block: &WalkLhbBlock, hit: &LhbHit, distance: f32) -> bool {
+    if hit.slot == NO_ELEMENT {
+        return false;
+    }
+    let end = if hit.is_exact { distance * SHADOW_REACH } else { distance - shadow_margin(block) };
+    // What the ray passes beside may be behind its start.
+    hit.t > 0.0 && hit.t < end
 }
 
 #[inline(always)]

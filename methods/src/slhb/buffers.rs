@@ -9,6 +9,18 @@ use twinlight_core::lattice::{Lattice, LatticeMesh, View};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, Result};
 
+/// Which shadow rays are looked up: a lookup costs a fraction of a ray, and has the buffers' resolution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shadows {
+    /// None: all are traced.
+    #[default]
+    Rays,
+    /// Those of indirect light, of every vertex but the first.
+    IndirectLookups,
+    /// All.
+    Lookups,
+}
+
 /// What the accuracy of lookups depends on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LookupSettings {
@@ -22,6 +34,8 @@ pub struct LookupSettings {
     pub cone: bool,
     /// Whether rays that lookups find nothing for are traced, because lines beside a silhouette lose light.
     pub trace_misses: bool,
+    /// Which shadow rays are looked up.
+    pub shadows: Shadows,
     /// Whether light at first vertices is a sum over all directions: the deterministic gather. Samples are best a multiple of their
     /// number.
     pub gather: bool,
@@ -40,6 +54,7 @@ impl Default for LookupSettings {
             layers: None,
             cone: true,
             trace_misses: true,
+            shadows: Shadows::Rays,
             gather: false,
             interleave: 1,
         }

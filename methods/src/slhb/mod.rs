@@ -11,7 +11,7 @@ mod kept;
 mod plan;
 mod sheet;
 
-pub use buffers::{Buffers, LookupSettings, build};
+pub use buffers::{Buffers, LookupSettings, Shadows, build};
 pub use filter::{Filtered, filter};
 pub use kept::Kept;
 pub use sheet::{Sheet, sheet};

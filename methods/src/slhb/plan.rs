@@ -1,11 +1,13 @@
 //! What follows from the settings alone.
 
-use super::{Buffers, LookupSettings};
+use super::{Buffers, LookupSettings, Shadows};
 use std::time::Duration;
 use twinlight_core::directions::NearestMap;
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::rasterize_lhb::{CAP_NEAR, Lhb, PATH_AUTO, RasterizeLhbParams};
-use twinlight_core::kernels::walk_lhb::{CONE, GATHER, TRACE_MISSES, WalkLhbBlock};
+use twinlight_core::kernels::walk_lhb::{
+    CONE, GATHER, SHADOW_LOOKUPS, SHADOW_LOOKUPS_FIRST, TRACE_MISSES, WalkLhbBlock,
+};
 use twinlight_core::lattice::{Lattice, View, subpixel_bits};
 use twinlight_core::{Backend, Result};
 
@@ -89,7 +91,9 @@ impl Plan {
             map_resolution: self.map_resolution,
             flags: flag(settings.cone, CONE)
                 | flag(settings.trace_misses, TRACE_MISSES)
-                | flag(settings.gather, GATHER),
+                | flag(settings.gather, GATHER)
+                | flag(settings.shadows != Shadows::Rays, SHADOW_LOOKUPS)
+                | flag(settings.shadows == Shadows::Lookups, SHADOW_LOOKUPS_FIRST),
             interleave: settings.interleave,
             gather_begin: self.gather_begin,
             gather_count: settings.directions.len() as u32,

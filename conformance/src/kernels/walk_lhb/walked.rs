@@ -36,6 +36,12 @@ impl<B: Backend> Prepared<B> {
         Ok(Self { resident: backend.upload_scene(compiled)?, buffers })
     }
 
+    /// With flags beside those that it has.
+    pub(crate) fn flagged(mut self, flags: u32) -> Self {
+        self.buffers.lookup.flags |= flags;
+        self
+    }
+
     /// Adds to a film.
     pub(super) fn walk(
         &self,
