@@ -11,6 +11,7 @@ use twinlight::io::LoadOptions;
 use twinlight::kernels::filter_indirect::MAX_WINDOW;
 use twinlight::methods::post::tonemap::Operator;
 use twinlight::methods::reference::Sampler;
+use twinlight::methods::slhb::Elements;
 use twinlight::scene::Limits;
 
 const EXAMPLES: &str = "\
@@ -209,6 +210,9 @@ pub struct SlhbArgs {
     /// Surfaces that a pixel of a hit buffer keeps: all, or the nearest N
     #[arg(long, value_name = "N", env = "TWINLIGHT_LAYERS", default_value = "all")]
     pub layers: Layers,
+    /// How their elements are stored: full, packed (half the bytes, depths to 1/4096 of the scene), or layers:K (packed, the nearest K)
+    #[arg(long, value_name = "FORMAT", env = "TWINLIGHT_ELEMENTS", default_value = "full", value_parser = elements)]
+    pub elements: Elements,
     /// Whether lookups follow the ray or its nearest direction alone
     #[arg(long, value_name = "HOW", env = "TWINLIGHT_CONE", default_value = "auto")]
     pub cone: ConeName,
@@ -233,6 +237,7 @@ impl SlhbArgs {
     /// The flag that asks for what only this method does.
     pub fn asked_for(&self) -> Option<&'static str> {
         let flags = [
+            ("--elements", self.elements != Elements::Full),
             ("--gather", self.gather == GatherName::All),
             ("--interleave", self.interleave > 1),
             ("--filter", self.filter > 1),
@@ -243,6 +248,10 @@ impl SlhbArgs {
 
 fn window() -> RangedI64ValueParser<u32> {
     clap::value_parser!(u32).range(1..=i64::from(MAX_WINDOW))
+}
+
+fn elements(text: &str) -> Result<Elements, String> {
+    text.parse().map_err(|e: twinlight::Error| e.to_string())
 }
 
 fn direction_set(text: &str) -> Result<DirectionSet, String> {
