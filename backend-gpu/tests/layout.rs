@@ -161,7 +161,8 @@ fn twins() -> Vec<Twins> {
             source: &pack_lhb::SOURCE,
             structs: vec![
                 layout!(pack_lhb::PackLhbBlock {
-                    call,
+                    layers,
+                    cap_side,
                     list_count,
                     element_count,
                     word_count,
@@ -169,7 +170,6 @@ fn twins() -> Vec<Twins> {
                     loop_rounds,
                     padding,
                 }),
-                layout!(pack_contract::PackLhbParams { layers, cap_side }),
                 layout!(lhb_contract::LhbElement { surface, depth }),
             ],
             constants: vec![

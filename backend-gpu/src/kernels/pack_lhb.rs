@@ -39,8 +39,10 @@ pub const TRIANGLES: u32 = 2;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct PackLhbBlock {
-    /// The contract's parameters.
-    pub call: PackLhbParams,
+    /// Words per pixel, 0 for lists as long as they are.
+    pub layers: u32,
+    /// One of the `CAP_…` constants.
+    pub cap_side: u32,
     /// Number of lists.
     pub list_count: u32,
     /// Number of elements.
@@ -58,7 +60,8 @@ pub struct PackLhbBlock {
 impl PackLhbBlock {
     fn new(call: PackLhbParams, shape: PackedShape) -> Self {
         Self {
-            call,
+            layers: call.layers,
+            cap_side: call.cap_side,
             list_count: shape.lists as u32,
             element_count: 0,
             word_count: shape.words,

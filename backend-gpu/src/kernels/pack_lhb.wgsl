@@ -18,13 +18,9 @@ const MALFORMED: u32 = 1u;
 // The greatest number of a triangle that a word has no room for, plus 1.
 const TRIANGLES: u32 = 2u;
 
-struct PackLhbParams {
+struct PackLhbBlock {
     layers: u32,
     cap_side: u32,
-}
-
-struct PackLhbBlock {
-    call: PackLhbParams,
     list_count: u32,
     element_count: u32,
     word_count: u32,
@@ -85,15 +81,15 @@ fn fill_layers(
     if index >= params.word_count {
         return;
     }
-    let list = index / params.call.layers;
-    let layer = index % params.call.layers;
+    let list = index / params.layers;
+    let layer = index % params.layers;
     let begin = list_offsets[list];
     let end = list_offsets[list + 1u];
     if begin > end || end > params.element_count {
         atomicStore(&status[MALFORMED], 1u);
         return;
     }
-    let stays = min(end - begin, params.call.layers);
+    let stays = min(end - begin, params.layers);
     let beyond = end - begin - stays;
     if layer == 0u {
         left_out[list] = left_out_before(list) + beyond;
@@ -102,7 +98,7 @@ fn fill_layers(
         words[index] = EMPTY;
         return;
     }
-    let first = begin + select(0u, beyond, params.call.cap_side == CAP_FAR);
+    let first = begin + select(0u, beyond, params.cap_side == CAP_FAR);
     words[index] = word_of(list_elements[first + layer]);
 }
 
@@ -145,9 +141,9 @@ fn size_layers(
 
 // How many words come before the empty ones.
 fn len_of(list: u32) -> u32 {
-    let begin = list * params.call.layers;
+    let begin = list * params.layers;
     var low = 0u;
-    var high = params.call.layers;
+    var high = params.layers;
     while low < high {
         let middle = low + (high - low) / 2u;
         if packed_words[begin + middle] != EMPTY {
@@ -172,8 +168,8 @@ fn unpack_layers(
     if index >= params.word_count {
         return;
     }
-    let list = index / params.call.layers;
-    let place = offsets[list] + index % params.call.layers;
+    let list = index / params.layers;
+    let place = offsets[list] + index % params.layers;
     if place < offsets[list + 1u] {
         elements[place] = unpacked_element(packed_words[index]);
     }
