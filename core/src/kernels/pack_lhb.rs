@@ -20,8 +20,8 @@
 //! first that is [`EMPTY`], and the offsets are the sums of their numbers. Equal depths stay in the order in which they were.
 //!
 //! *Accuracy of depth.* What is read back is within 2¹⁸ units, 16 lattice steps, of the depth that was packed: a 4096th of the lattice's
-//! width, 1/32 of a pixel's at 128² and a quarter of it at 1024². Triangle and facing come back as they were. Windows of lookups
-//! ([`crate::kernels::query_lhb`]) are wide enough: 180 steps and more.
+//! width, 1/32 of a pixel's at 128² and a quarter of it at 1024². Triangle and facing come back as they were. The windows of
+//! `walk_lhb`'s lookups are not widened for it: what they allow for other roundings is as much, 4 steps times a slope of 4 or more.
 //! *Why pixel by pixel.* A lookup reads a list from one end; 16 words are a cache line. Layer by layer each element would be in
 //! a line of its own.
 //! *Edge cases.* No elements: no words, or only empty ones. The last number of 20 bits is refused, so that no element is [`EMPTY`].

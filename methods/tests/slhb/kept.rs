@@ -13,7 +13,7 @@ use twinlight_core::scene::{
 use twinlight_fixtures::meshes::{icosphere, placed, with_material};
 use twinlight_fixtures::scenes::builtin;
 use twinlight_methods::reference::Control;
-use twinlight_methods::slhb::{Buffers, Kept, LookupSettings, build, render};
+use twinlight_methods::slhb::{Buffers, Elements, Kept, LookupSettings, build, render};
 
 /// The Cornell box with a ball that crosses it within four seconds, turning, and is out of the box from the third on.
 fn box_and_ball() -> Scene {

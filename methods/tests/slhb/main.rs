@@ -129,7 +129,7 @@ fn a_cap_keeps_the_nearest() {
     assert!(capped.bytes(&room.backend) > 0);
 }
 
-/// Measured: packed 0.9999 of the light that full elements give, 16 layers as much.
+/// Measured: 0.99994 of the light that full elements give.
 #[test]
 fn packed_elements_give_the_same_light() {
     let room = Room::new("cornell", 2);
