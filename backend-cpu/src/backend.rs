@@ -13,6 +13,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
+use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -231,6 +232,17 @@ impl Backend for CpuBackend {
     fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>> {
         params.check(kept, added, |buffer| buffer.as_slice().len())?;
         self.run("merge_lhb", || kernels::merge_lhb::merge_lhb(kept, added, params))
+    }
+
+    fn pack_lhb(&self, lhb: &Lhb<Self>, params: &PackLhbParams) -> Result<PackedLhb<Self>> {
+        let len = |buffer: &CpuBuffer<u32>| buffer.as_slice().len();
+        let shape = params.check(lhb, len, lhb.elements.as_slice().len())?;
+        self.run("pack_lhb", || kernels::pack_lhb::pack_lhb(lhb, params, shape))
+    }
+
+    fn unpack_lhb(&self, packed: &PackedLhb<Self>) -> Result<Lhb<Self>> {
+        let shape = packed.check(|buffer| buffer.as_slice().len())?;
+        self.run("unpack_lhb", || kernels::pack_lhb::unpack_lhb(packed, shape))
     }
 
     fn query_lhb(

@@ -3,8 +3,8 @@
 use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
 use crate::kernels::{
-    filter_indirect, merge_lhb, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace, trace_paths,
-    walk_lhb,
+    filter_indirect, merge_lhb, pack_lhb, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace,
+    trace_paths, walk_lhb,
 };
 use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
@@ -12,6 +12,7 @@ use crate::strict::Mode;
 use bytemuck::Pod;
 use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
+use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -148,6 +149,14 @@ impl Backend for GpuBackend {
 
     fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>> {
         merge_lhb::run(&self.device, kept, added, params)
+    }
+
+    fn pack_lhb(&self, lhb: &Lhb<Self>, params: &PackLhbParams) -> Result<PackedLhb<Self>> {
+        pack_lhb::pack(&self.device, lhb, params)
+    }
+
+    fn unpack_lhb(&self, packed: &PackedLhb<Self>) -> Result<Lhb<Self>> {
+        pack_lhb::unpack(&self.device, packed)
     }
 
     fn query_lhb(

@@ -147,6 +147,23 @@ impl GpuDevice {
         })
     }
 
+    /// A buffer with a copy of another's elements, after everything that was recorded before.
+    ///
+    /// # Errors
+    /// As [`GpuDevice::zeroed`].
+    pub(crate) fn copied<T: Pod>(&self, buffer: &GpuBuffer<T>) -> Result<GpuBuffer<T>> {
+        self.expect_own(buffer.binding())?;
+        let copy = self.zeroed(buffer.len)?;
+        let commands = self.scoped(0, |device| {
+            let mut encoder =
+                device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("copy") });
+            encoder.copy_buffer_to_buffer(&buffer.raw, 0, &copy.raw, 0, copy.raw.size());
+            encoder.finish()
+        })?;
+        self.finish(commands)?;
+        Ok(copy)
+    }
+
     /// Copies a buffer back, after everything that was recorded before.
     ///
     /// # Errors

@@ -40,6 +40,8 @@ shared! {
     OCTAHEDRAL = "octahedral";
     /// Twin of `transport::offset`.
     OFFSET = "offset";
+    /// Twin of `math::packed`; wants a struct `LhbElement`.
+    PACKED = "packed";
     /// What the kernels that follow paths share; wants `params.call`, `params.environment` and `DENSER_COUNTS`.
     PATH = "path";
     /// Twin of `scene::compiled`, and the scene's bindings.

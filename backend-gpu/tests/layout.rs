@@ -5,14 +5,14 @@
 
 use std::mem::{offset_of, size_of};
 use twinlight_backend_gpu::kernels::{
-    self, filter_indirect, merge_lhb, path, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace,
-    trace_paths, walk_lhb,
+    self, filter_indirect, merge_lhb, pack_lhb, path, query_lhb, rasterize_lhb, scan, shade_primary, sort,
+    trace, trace_paths, walk_lhb,
 };
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
-    filter_indirect as filter_contract, merge_lhb as merge_contract, query_lhb as query_contract,
-    rasterize_lhb as lhb_contract, shade_primary as shade_contract, trace as trace_contract,
-    trace_paths as paths_contract, walk_lhb as walk_contract,
+    filter_indirect as filter_contract, merge_lhb as merge_contract, pack_lhb as pack_contract,
+    query_lhb as query_contract, rasterize_lhb as lhb_contract, shade_primary as shade_contract,
+    trace as trace_contract, trace_paths as paths_contract, walk_lhb as walk_contract,
 };
 use twinlight_core::transport::{intersect, lhb, light};
 use twinlight_core::{bvh, lattice, math, scene, transport};
@@ -154,6 +154,33 @@ fn twins() -> Vec<Twins> {
                 ("WORKGROUP_SIZE", merge_lhb::WORKGROUP_SIZE.into()),
                 ("MALFORMED", merge_lhb::MALFORMED.into()),
                 ("HAS_LONG_LISTS", merge_lhb::HAS_LONG_LISTS.into()),
+                ("CAP_FAR", lhb_contract::CAP_FAR.into()),
+            ],
+        },
+        Twins {
+            source: &pack_lhb::SOURCE,
+            structs: vec![
+                layout!(pack_lhb::PackLhbBlock {
+                    layers,
+                    cap_side,
+                    list_count,
+                    element_count,
+                    word_count,
+                    has_left_out,
+                    loop_rounds,
+                    padding,
+                }),
+                layout!(lhb_contract::LhbElement { surface, depth }),
+            ],
+            constants: vec![
+                ("WORKGROUP_SIZE", pack_lhb::WORKGROUP_SIZE.into()),
+                ("MALFORMED", pack_lhb::MALFORMED.into()),
+                ("TRIANGLES", pack_lhb::TRIANGLES.into()),
+                ("MAX_TRIANGLES", pack_contract::MAX_TRIANGLES.into()),
+                ("EMPTY", pack_contract::EMPTY.into()),
+                ("SURFACE_BITS", pack_contract::SURFACE_BITS.into()),
+                ("DEPTH_SHIFT", pack_contract::DEPTH_SHIFT.into()),
+                ("LAST_BIN", pack_contract::LAST_BIN.into()),
                 ("CAP_FAR", lhb_contract::CAP_FAR.into()),
             ],
         },

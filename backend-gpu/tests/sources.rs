@@ -103,6 +103,7 @@ fn exact_kernels_have_no_floats() {
         ("sort", contracts::sort::ACCURACY),
         ("rasterize_lhb", contracts::rasterize_lhb::ACCURACY),
         ("merge_lhb", contracts::merge_lhb::ACCURACY),
+        ("pack_lhb", contracts::pack_lhb::ACCURACY),
         ("query_lhb", contracts::query_lhb::ACCURACY),
     ];
     let has_floats = |source: &KernelSource| {

@@ -1,13 +1,14 @@
 //! Layered hit buffers: triangle-views per second, what an element costs beside writing it to memory, lookups beside
-//! traced rays, and updates beside whole builds.
+//! traced rays, updates beside whole builds, and what elements take in each format.
 //!
 //! `cargo bench -p twinlight --bench lhb -- [SCENE…] [--directions N] [--size N] [--rounds N] [--path 0..4]
-//! [--part builds|lookups|updates] [--dump FILE]`
+//! [--part builds|lookups|updates|formats] [--dump FILE]`
 //!
 //! Builds draw a view per direction, though opposite directions share one: that is the work that is compared. The floor is
 //! filling as many bytes of the same vector from the same threads, in turn with the builds. Lookups are cosine-weighted rays
 //! from random points of the scene's surfaces, in the order of their directions; the rays traced beside them are the same. Updates
-//! and whole builds are in turn, of the same frames, a view per line: what stays is kept, and an object is moved. `--dump` writes
+//! and whole builds are in turn, of the same frames, a view per line: what stays is kept, and an object is moved. Formats are
+//! made in turn with builds of a view per line. `--dump` writes
 //! triangles and rays for `benchmarks/embree_rays.cpp`.
 
 #[path = "../../backend-cpu/benches/trace/clock.rs"]
@@ -15,6 +16,7 @@ mod clock;
 mod queries;
 
 mod build;
+mod formats;
 mod update;
 
 use std::path::PathBuf;
@@ -87,6 +89,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         if arguments.wants("updates") {
             update::time(&backend, &read, &arguments)?;
+        }
+        if arguments.wants("formats") {
+            formats::time(&backend, &scene, &arguments)?;
         }
     }
     Ok(())

@@ -11,6 +11,7 @@ use crate::scenes::{Rays, compiled};
 use crate::trial::{Check, Context, Failure, Options, ensure};
 use twinlight_core::Backend;
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
+use twinlight_core::kernels::pack_lhb::PackLhbParams;
 use twinlight_core::kernels::rasterize_lhb::{CAP_FAR, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::trace::Hit;
@@ -30,6 +31,7 @@ pub fn checks<A: Backend, B: Backend>() -> Vec<(&'static str, CrossCheck<A, B>)>
     vec![
         ("rasterize_lhb", lists),
         ("merge_lhb", merges),
+        ("pack_lhb", packings),
         ("query_lhb", lookups),
         ("trace", hits),
         ("shade_primary", gbuffers),
@@ -119,6 +121,32 @@ fn merges<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
             exact(&cx, "offsets", &got.0, &want.0, Shape::Image { width: 48 })?;
             exact(&cx, "elements", &got.1, &want.1, Shape::Line)?;
             exact(&cx, "left_out", &got.2, &want.2, Shape::Image { width: 48 })?;
+        }
+        Ok(())
+    })
+}
+
+/// Such buffers packed and read back: whole lists, and the two farthest layers.
+fn packings<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    type Downloaded = (Vec<u32>, Vec<u32>, Vec<LhbElement>);
+    fn run<B: Backend>(backend: &B, mesh: &LatticeMesh, layers: u32) -> Result<Downloaded, Failure> {
+        let resident = backend.upload_mesh(mesh)?;
+        let lhb = backend.rasterize_lhb(&resident, &four_views()?, &RasterizeLhbParams::new(48))?;
+        let packed = backend.pack_lhb(&lhb, &PackLhbParams { layers, cap_side: CAP_FAR })?;
+        let back = backend.unpack_lhb(&packed)?;
+        let words = backend.download(&packed.words)?;
+        Ok((words, backend.download(&packed.left_out)?, backend.download(&back.elements)?))
+    }
+    each_scene(|scene| {
+        let compiled = compiled(scene);
+        let mesh = LatticeMesh::of_scene(&Lattice::of_scene(&compiled)?, &compiled)?;
+        for layers in [0, 2] {
+            let (want, got) = (run(a, &mesh, layers)?, run(b, &mesh, layers)?);
+            let options = Options::default();
+            let cx = context(b, &options, "cross.pack_lhb");
+            exact(&cx, "words", &got.0, &want.0, Shape::Line)?;
+            exact(&cx, "left_out", &got.1, &want.1, Shape::Line)?;
+            exact(&cx, "elements", &got.2, &want.2, Shape::Line)?;
         }
         Ok(())
     })

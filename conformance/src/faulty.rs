@@ -2,6 +2,7 @@
 
 mod filter_indirect;
 mod merge_lhb;
+mod pack_lhb;
 mod query_lhb;
 mod rasterize_lhb;
 mod scan;
@@ -15,6 +16,7 @@ use crate::faults::Fault;
 use bytemuck::Pod;
 use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
+use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -150,6 +152,14 @@ impl<B: Backend> Backend for Faulty<'_, B> {
 
     fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>> {
         merge_lhb::merge_lhb(self.inner, self.fault, &self.merged_before, kept, added, params)
+    }
+
+    fn pack_lhb(&self, lhb: &Lhb<Self>, params: &PackLhbParams) -> Result<PackedLhb<Self>> {
+        pack_lhb::pack_lhb(self.inner, self.fault, lhb, params)
+    }
+
+    fn unpack_lhb(&self, packed: &PackedLhb<Self>) -> Result<Lhb<Self>> {
+        pack_lhb::unpack_lhb(self.inner, self.fault, packed)
     }
 
     fn query_lhb(

@@ -2,6 +2,7 @@
 
 pub mod filter_indirect;
 pub mod merge_lhb;
+pub mod pack_lhb;
 mod property;
 pub mod query_lhb;
 pub mod rasterize_lhb;
@@ -16,11 +17,12 @@ use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 10] = [
+pub const STEMS: [&str; 11] = [
     "scan",
     "sort",
     "rasterize_lhb",
     "merge_lhb",
+    "pack_lhb",
     "query_lhb",
     "trace",
     "shade_primary",
@@ -35,6 +37,7 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     sort::list(list);
     rasterize_lhb::list(list);
     merge_lhb::list(list);
+    pack_lhb::list(list);
     query_lhb::list(list);
     trace::list(list);
     shade_primary::list(list);

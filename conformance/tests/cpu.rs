@@ -106,7 +106,7 @@ fn d10_host_flushes_subnormals() -> Check {
     let flushing = pool.install(|| {
         let options = Options {
             effort: Effort::Quick,
-            kernels: ["scan", "sort", "rasterize_lhb", "merge_lhb", "query_lhb", "trace"]
+            kernels: ["scan", "sort", "rasterize_lhb", "merge_lhb", "pack_lhb", "query_lhb", "trace"]
                 .map(String::from)
                 .into(),
             ..Options::default()

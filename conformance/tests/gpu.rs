@@ -61,7 +61,8 @@ fn add_mode(list: &mut list::List, index: usize, report: &AdapterReport, mode: M
 /// The kernels whose trials run in a mode. Modes differ in float arithmetic: those of the dear kernels that have none run in portable
 /// mode, and strict mode compares them with the CPU.
 fn kernels_of(mode: Mode) -> Vec<String> {
-    let is_run =
-        |stem: &&str| mode == Mode::Portable || !["rasterize_lhb", "merge_lhb", "query_lhb"].contains(stem);
+    let is_run = |stem: &&str| {
+        mode == Mode::Portable || !["rasterize_lhb", "merge_lhb", "pack_lhb", "query_lhb"].contains(stem)
+    };
     kernels::STEMS.into_iter().filter(is_run).map(String::from).collect()
 }

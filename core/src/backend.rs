@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
 use crate::kernels::merge_lhb::MergeLhbParams;
+use crate::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use crate::kernels::query_lhb::LhbQuery;
 use crate::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use crate::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -155,6 +156,21 @@ pub trait Backend {
     /// [`crate::Error::InvalidInput`] for parameters that are out of range and for buffers that don't fit each other,
     /// [`crate::Error::LimitExceeded`] or [`crate::Error::OutOfMemory`] when the lists are too many or too long for the device.
     fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>>;
+
+    /// Layered hit buffers in half the bytes. Contract: [`crate::kernels::pack_lhb`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] for parameters that are out of range and for malformed buffers,
+    /// [`crate::Error::LimitExceeded`] for triangles beyond the limit, and with [`crate::Error::OutOfMemory`] when the words are
+    /// too many for the device.
+    fn pack_lhb(&self, lhb: &Lhb<Self>, params: &PackLhbParams) -> Result<PackedLhb<Self>>;
+
+    /// The way back from [`Backend::pack_lhb`]. Contract: [`crate::kernels::pack_lhb`].
+    ///
+    /// # Errors
+    /// [`crate::Error::InvalidInput`] for malformed buffers, [`crate::Error::LimitExceeded`] or [`crate::Error::OutOfMemory`] when the
+    /// elements are too many for the device.
+    fn unpack_lhb(&self, packed: &PackedLhb<Self>) -> Result<Lhb<Self>>;
 
     /// What points see along the directions of views. Contract: [`crate::kernels::query_lhb`].
     ///

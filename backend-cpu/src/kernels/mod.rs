@@ -2,6 +2,7 @@
 
 pub(crate) mod filter_indirect;
 pub(crate) mod merge_lhb;
+pub(crate) mod pack_lhb;
 pub(crate) mod query_lhb;
 pub(crate) mod rasterize_lhb;
 pub(crate) mod scan;

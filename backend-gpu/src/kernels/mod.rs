@@ -5,6 +5,7 @@
 
 pub mod filter_indirect;
 pub mod merge_lhb;
+pub mod pack_lhb;
 pub mod path;
 pub mod query_lhb;
 pub mod rasterize_lhb;
@@ -24,6 +25,7 @@ pub const ALL: &[&KernelSource] = &[
     &sort::SOURCE,
     &rasterize_lhb::SOURCE,
     &merge_lhb::SOURCE,
+    &pack_lhb::SOURCE,
     &query_lhb::SOURCE,
     &trace::SOURCE,
     &shade_primary::SOURCE,

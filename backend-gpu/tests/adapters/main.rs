@@ -9,6 +9,7 @@ mod frames;
 mod lhb;
 mod lookups;
 mod merges;
+mod packs;
 mod scan;
 mod sort;
 mod strict;
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
         lhb::CHECKS,
         lookups::CHECKS,
         merges::CHECKS,
+        packs::CHECKS,
         scan::CHECKS,
         sort::CHECKS,
         strict::CHECKS,

@@ -11,7 +11,7 @@ use twinlight::io::LoadOptions;
 use twinlight::kernels::filter_indirect::MAX_WINDOW;
 use twinlight::methods::post::tonemap::Operator;
 use twinlight::methods::reference::Sampler;
-use twinlight::methods::slhb::Shadows;
+use twinlight::methods::slhb::{Elements, Shadows};
 use twinlight::scene::Limits;
 
 const EXAMPLES: &str = "\
@@ -242,6 +242,9 @@ pub struct SlhbArgs {
     /// Surfaces that a pixel of a hit buffer keeps: all, or the nearest N
     #[arg(long, value_name = "N", env = "TWINLIGHT_LAYERS", default_value = "all")]
     pub layers: Layers,
+    /// How their elements are stored: full, packed (half the bytes, depths to 1/4096 of the scene), or layers:K (packed, the nearest K)
+    #[arg(long, value_name = "FORMAT", env = "TWINLIGHT_ELEMENTS", default_value = "full", value_parser = elements)]
+    pub elements: Elements,
     /// Whether lookups follow the ray or its nearest direction alone
     #[arg(long, value_name = "HOW", env = "TWINLIGHT_CONE", default_value = "auto")]
     pub cone: ConeName,
@@ -270,6 +273,7 @@ impl SlhbArgs {
     pub fn asked_for(&self) -> Option<&'static str> {
         let flags = [
             ("--shadows", self.shadows != ShadowsName::Rays),
+            ("--elements", self.elements != Elements::Full),
             ("--gather", self.gather == GatherName::All),
             ("--interleave", self.interleave > 1),
             ("--filter", self.filter > 1),
@@ -280,6 +284,10 @@ impl SlhbArgs {
 
 fn window() -> RangedI64ValueParser<u32> {
     clap::value_parser!(u32).range(1..=i64::from(MAX_WINDOW))
+}
+
+fn elements(text: &str) -> Result<Elements, String> {
+    text.parse().map_err(|e: twinlight::Error| e.to_string())
 }
 
 fn direction_set(text: &str) -> Result<DirectionSet, String> {

@@ -95,6 +95,7 @@ impl Job {
             directions: knobs.directions.clone(),
             size: knobs.lhb_size,
             layers: knobs.layers.0,
+            elements: knobs.elements,
             cone: knobs.cone == ConeName::Auto,
             trace_misses: knobs.misses == MissesName::Trace,
             shadows: knobs.shadows.into(),

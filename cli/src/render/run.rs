@@ -28,8 +28,12 @@ pub struct Built {
     pub elements: usize,
     /// Of those, the ones kept from a frame before.
     pub kept: usize,
-    /// On the device.
+    /// To pack them and to read them back.
+    pub pack_time: Duration,
+    /// On the device, as they are stored.
     pub bytes: u64,
+    /// Of what is read back of them for lookups.
+    pub read_back_bytes: u64,
 }
 
 /// What the camera sees, and what is made with it.
@@ -134,7 +138,9 @@ impl Session<'_> {
             views: buffers.views.len(),
             elements: buffers.elements(backend),
             kept: buffers.kept_elements,
+            pack_time: buffers.pack_time,
             bytes: buffers.bytes(backend),
+            read_back_bytes: buffers.read_back_bytes,
         });
 
         let caught = || self.interrupt.caught();

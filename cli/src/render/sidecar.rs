@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use std::time::Duration;
 use twinlight::kernels::trace_paths::FilmTexel;
 use twinlight::methods::reference::Sampler;
+use twinlight::methods::slhb::Elements;
 
 /// Times that only the command knows.
 pub struct Times {
@@ -69,6 +70,7 @@ pub fn json(
     let seconds = |d: Duration| (d.as_secs_f64() * 1e6).round_ties_even() / 1e6;
     let pixels = u64::from(settings.width) * u64::from(settings.height);
     let kernel = if done.lookups.is_some() { "walk_lhb" } else { "trace_paths" };
+    let packed = done.lookups.as_ref().filter(|_| job.lookups.elements != Elements::Full);
     let filtered = done.surfaces.as_ref().filter(|surfaces| surfaces.filtered.is_some());
     let value = json!({
         "twinlight": env!("CARGO_PKG_VERSION"),
@@ -81,6 +83,7 @@ pub fn json(
                 "directions": job.lookups.directions.to_string(),
                 "size": job.lookups.size,
                 "layers": job.lookups.layers,
+                "elements": job.lookups.elements.to_string(),
                 "cone": job.lookups.cone,
                 "gather": job.lookups.gather,
                 "trace_misses": job.lookups.trace_misses,
@@ -120,6 +123,7 @@ pub fn json(
             "compile": seconds(prepared.compile_time),
             "upload": seconds(done.upload_time),
             "rasterize_lhb": done.lookups.as_ref().map(|built| seconds(built.time)),
+            "pack_lhb": packed.map(|built| seconds(built.pack_time)),
             (kernel): seconds(done.taken.elapsed),
             "shade_primary": done.surfaces.as_ref().map(|surfaces| seconds(surfaces.gbuffer_time)),
             "filter_indirect": filtered.map(|surfaces| seconds(surfaces.filter_time)),
@@ -129,6 +133,7 @@ pub fn json(
         "bytes": {
             "scene": source::compiled_bytes(&prepared.compiled),
             "lhb": done.lookups.as_ref().map(|built| built.bytes),
+            "lhb_read_back": packed.map(|built| built.read_back_bytes),
             "film": pixels * size_of::<FilmTexel>() as u64,
             "peak_resident": peak_resident(),
         },

@@ -12,7 +12,7 @@ fn slhb_renders_and_says_what_it_built() {
     let sidecar: serde_json::Value = serde_json::from_slice(&folder.read("cornell.json")).unwrap();
     assert_eq!(sidecar["settings"]["method"], "slhb");
     let knobs = serde_json::json!({
-        "directions": "icosahedron:20", "size": 16, "layers": null, "cone": false, "trace_misses": true,
+        "directions": "icosahedron:20", "size": 16, "layers": null, "elements": "full", "cone": false, "trace_misses": true,
         "shadows": "rays", "gather": false, "interleave": 1, "filter": 1
     });
     assert_eq!(sidecar["settings"]["slhb"], knobs);
@@ -22,6 +22,7 @@ fn slhb_renders_and_says_what_it_built() {
     assert!(sidecar["seconds"]["walk_lhb"].as_f64().unwrap() > 0.0);
     assert!(sidecar["seconds"]["trace_paths"].is_null());
     assert!(sidecar["seconds"]["filter_indirect"].is_null());
+    assert!(sidecar["seconds"]["pack_lhb"].is_null() && sidecar["bytes"]["lhb_read_back"].is_null());
 }
 
 /// Every output shows filtered light, and none of them other direct light.
@@ -48,6 +49,46 @@ fn filtered_light_is_in_every_picture() {
     let parts = layer(&filtered.1, "direct").into_iter().zip(layer(&filtered.1, "indirect"));
     let sum: Vec<_> = parts.map(|(direct, indirect)| [0, 1, 2].map(|c| direct[c] + indirect[c])).collect();
     assert_eq!(layer(&filtered.1, ""), sum);
+}
+
+/// Formats take the bytes that they are for, and render other pictures.
+#[test]
+fn elements_are_stored_as_asked_for() {
+    let folder = Folder::new();
+    let render = |format: &str, more: &[&str]| {
+        let arguments = ["render", "builtin:cornell", "--method", "slhb", "--lhb-size", "16", "-o", "a.exr"];
+        folder.run(&[&arguments[..], &SMALL, &["--elements", format], more].concat()).ok();
+        let sidecar: serde_json::Value = serde_json::from_slice(&folder.read("a.json")).unwrap();
+        assert_eq!(sidecar["settings"]["slhb"]["elements"], format);
+        (folder.read("a.exr"), sidecar)
+    };
+    let number = |sidecar: &serde_json::Value, of: &str, key: &str| sidecar[of][key].as_u64().unwrap();
+    let [full, packed, layers] = ["full", "packed", "layers:2"].map(|format| render(format, &[]));
+    let [all, still_all, fewer] = [&full, &packed, &layers].map(|r| number(&r.1, "result", "lhb_elements"));
+    assert!(all == still_all && fewer < all, "{all}, {still_all}, {fewer}");
+    let [of_full, of_packed, of_layers] = [&full, &packed, &layers].map(|r| number(&r.1, "bytes", "lhb"));
+    assert_eq!(of_full - of_packed, 4 * all);
+    // 10 views of 16² pixels: two words and a number left out, instead of an offset and the elements.
+    let lists = 10 * 16 * 16;
+    assert_eq!(of_full - 8 * all - 4 * (lists + 1), of_layers - 12 * lists);
+    assert_eq!(number(&packed.1, "bytes", "lhb_read_back"), 8 * all + 4 * (lists + 1));
+    assert!(packed.1["seconds"]["pack_lhb"].as_f64().unwrap() > 0.0);
+    assert!(full.0 != packed.0 && packed.0 != layers.0);
+    // A cap before the layers leaves room in them.
+    let capped = render("layers:3", &["--layers", "2"]);
+    assert!(capped.0 == layers.0);
+}
+
+#[test]
+fn elements_that_cannot_be_are_refused() {
+    let folder = Folder::new();
+    for wrong in ["layers:0", "layers", "half", "layers:-1"] {
+        let failed = folder.run(&["render", "builtin:cornell", "--method", "slhb", "--elements", wrong]);
+        assert_eq!(failed.code, Some(2));
+        assert!(failed.stderr.contains("neither full, packed nor layers:K"), "{}", failed.stderr);
+    }
+    let failed = folder.run(&["render", "builtin:cornell", "--elements", "packed"]);
+    assert!(failed.stderr.contains("--elements is for --method slhb"), "{}", failed.stderr);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use twinlight_backend_cpu::CpuBackend;
 use twinlight_conformance::{Check, Failure};
 use twinlight_core::Backend;
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
+use twinlight_core::kernels::pack_lhb::PackLhbParams;
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{LhbElement, RasterizeLhbParams};
 use twinlight_core::lattice::{LatticeMesh, View};
@@ -63,10 +64,14 @@ fn lists_and_hits(
     let RasterizeLhbParams { layer_cap, cap_side, .. } = *params;
     let merge = MergeLhbParams { first_triangle: 9_000, layer_cap, cap_side, padding: 0 };
     let merged = backend.merge_lhb(&lhb, &lhb, &merge)?;
+    let packed = backend.pack_lhb(&lhb, &PackLhbParams { layers: 4, cap_side })?;
+    let back = backend.unpack_lhb(&packed)?;
     let mut hits = backend.zeroed(queries.len())?;
     backend.query_lhb(mesh, &lhb, views, &backend.upload(queries)?, &mut hits)?;
-    let offsets = [lhb.offsets.as_slice(), merged.offsets.as_slice(), merged.left_out.as_slice()].concat();
-    let elements = [lhb.elements.as_slice(), merged.elements.as_slice(), hits.as_slice()].concat();
+    let words = [&lhb.offsets, &merged.offsets, &merged.left_out, &packed.words, &packed.left_out];
+    let elements = [&lhb.elements, &merged.elements, &back.elements, &hits];
+    let offsets = words.map(|buffer| buffer.as_slice()).concat();
+    let elements = elements.map(|buffer| buffer.as_slice()).concat();
     Ok((offsets, elements))
 }
 

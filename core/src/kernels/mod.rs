@@ -3,6 +3,7 @@
 
 pub mod filter_indirect;
 pub mod merge_lhb;
+pub mod pack_lhb;
 pub mod query_lhb;
 pub mod rasterize_lhb;
 pub mod scan;

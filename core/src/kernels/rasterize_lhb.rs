@@ -179,7 +179,7 @@ impl RasterizeLhbParams {
 }
 
 /// The number of lists of `views` views of `size` by `size` pixels, if there may be such views.
-fn lists(views: u64, size: u32) -> Result<usize> {
+pub(crate) fn lists(views: u64, size: u32) -> Result<usize> {
     crate::lattice::check_size(size)?;
     let lists = views.saturating_mul(u64::from(size) * u64::from(size));
     let limit = scan::MAX_LEN as u64 - 1;

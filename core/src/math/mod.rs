@@ -3,6 +3,7 @@
 pub mod fixed;
 pub mod hash;
 pub mod octahedral;
+pub mod packed;
 pub mod sobol;
 pub mod trig;
 pub mod vector;

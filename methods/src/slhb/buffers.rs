@@ -1,5 +1,6 @@
 //! The buffers of a scene, and what lookups need beside them.
 
+use super::elements::Elements;
 use super::plan::Plan;
 use std::time::{Duration, Instant};
 use twinlight_core::directions::DirectionSet;
@@ -30,6 +31,8 @@ pub struct LookupSettings {
     pub size: u32,
     /// Most layers per pixel, the nearest to the viewer; `None` keeps all.
     pub layers: Option<u32>,
+    /// How elements are stored.
+    pub elements: Elements,
     /// The cone approximation: without it, light bands.
     pub cone: bool,
     /// Whether rays that lookups find nothing for are traced, because lines beside a silhouette lose light.
@@ -52,6 +55,7 @@ impl Default for LookupSettings {
             directions,
             size: 128,
             layers: None,
+            elements: Elements::Full,
             cone: true,
             trace_misses: true,
             shadows: Shadows::Rays,
@@ -65,7 +69,7 @@ impl Default for LookupSettings {
 pub struct Buffers<B: Backend> {
     /// The snapped scene.
     pub mesh: B::Mesh,
-    /// A view per line of the set.
+    /// A view per line of the set; of packed elements, what was read back.
     pub lhb: Lhb<B>,
     /// The views.
     pub views: Vec<View>,
@@ -75,6 +79,12 @@ pub struct Buffers<B: Backend> {
     pub lookup: WalkLhbBlock,
     /// Time to rasterize, and to merge what was kept with what moves.
     pub build_time: Duration,
+    /// Time to pack elements and to read them back.
+    pub pack_time: Duration,
+    /// Bytes of the lists as they are stored.
+    pub stored_bytes: u64,
+    /// Bytes of what lookups read instead; 0 where they read the lists as they are stored.
+    pub read_back_bytes: u64,
     /// Elements of what was kept from a frame before; 0 where everything was rasterized.
     pub kept_elements: usize,
 }
@@ -85,10 +95,9 @@ impl<B: Backend> Buffers<B> {
         backend.len(&self.lhb.elements)
     }
 
-    /// Bytes on the device.
+    /// Bytes of the lists as they are stored and of the directional map. Beside them, lookups take [`Buffers::read_back_bytes`].
     pub fn bytes(&self, backend: &B) -> u64 {
-        let words = backend.len(&self.lhb.offsets) + backend.len(&self.lhb.left_out) + backend.len(&self.map);
-        8 * self.elements(backend) as u64 + 4 * words as u64
+        self.stored_bytes + 4 * backend.len(&self.map) as u64
     }
 }
 
@@ -107,6 +116,7 @@ pub fn build<B: Backend>(
 
 /// [`build`], with what follows from the settings.
 pub(super) fn build_by<B: Backend>(plan: &Plan, backend: &B, scene: &CompiledScene) -> Result<Buffers<B>> {
+    plan.settings.elements.check(scene.triangles.len())?;
     let lattice = Lattice::of_scene(scene)?;
     let mesh = LatticeMesh::of_scene(&lattice, scene)?;
     let resident = backend.upload_mesh(&mesh)?;

@@ -93,6 +93,7 @@ impl<B: Backend> Kept<B> {
         scene: &CompiledScene,
         settings: &LookupSettings,
     ) -> Result<Buffers<B>> {
+        settings.elements.check(scene.triangles.len())?;
         let (triangles, moving) = scene.parts();
         let staying = match self.staying.take().filter(|kept| kept.is_of(triangles, settings)) {
             Some(kept) => kept,

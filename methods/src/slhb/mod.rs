@@ -6,12 +6,14 @@
 //! and pixels. *Source.* Yu, spherical layered hit buffers.
 
 mod buffers;
+mod elements;
 mod filter;
 mod kept;
 mod plan;
 mod sheet;
 
 pub use buffers::{Buffers, LookupSettings, Shadows, build};
+pub use elements::Elements;
 pub use filter::{Filtered, filter};
 pub use kept::Kept;
 pub use sheet::{Sheet, sheet};

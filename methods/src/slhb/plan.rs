@@ -1,7 +1,8 @@
 //! What follows from the settings alone.
 
+use super::elements::Stored;
 use super::{Buffers, LookupSettings, Shadows};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use twinlight_core::directions::NearestMap;
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::rasterize_lhb::{CAP_NEAR, Lhb, PATH_AUTO, RasterizeLhbParams};
@@ -67,6 +68,8 @@ impl Plan {
         build_time: Duration,
         kept_elements: usize,
     ) -> Result<Buffers<B>> {
+        let start = Instant::now();
+        let Stored { lhb, bytes, read_back_bytes } = self.settings.elements.stored(backend, lhb)?;
         Ok(Buffers {
             mesh,
             lhb,
@@ -74,6 +77,9 @@ impl Plan {
             map: backend.upload(&self.map)?,
             lookup: self.lookup(lattice),
             build_time,
+            pack_time: start.elapsed(),
+            stored_bytes: bytes,
+            read_back_bytes,
             kept_elements,
         })
     }

@@ -5,6 +5,7 @@ use bytemuck::Pod;
 use twinlight_backend_cpu::{CpuBackend, CpuBuffer, CpuMesh};
 use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
+use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
@@ -95,6 +96,14 @@ impl Backend for Cramped {
 
     fn merge_lhb(&self, _: &Lhb<Self>, _: &Lhb<Self>, _: &MergeLhbParams) -> Result<Lhb<Self>> {
         Err(Error::OutOfMemory { device: "cramped".into(), bytes: 1 })
+    }
+
+    fn pack_lhb(&self, _: &Lhb<Self>, _: &PackLhbParams) -> Result<PackedLhb<Self>> {
+        unreachable!("{OTHER}")
+    }
+
+    fn unpack_lhb(&self, _: &PackedLhb<Self>) -> Result<Lhb<Self>> {
+        unreachable!("{OTHER}")
     }
 
     fn query_lhb(

@@ -13,7 +13,7 @@ use twinlight_core::scene::{
 use twinlight_fixtures::meshes::{icosphere, placed, with_material};
 use twinlight_fixtures::scenes::builtin;
 use twinlight_methods::reference::Control;
-use twinlight_methods::slhb::{Buffers, Kept, LookupSettings, build, render};
+use twinlight_methods::slhb::{Buffers, Elements, Kept, LookupSettings, build, render};
 
 /// The Cornell box with a ball that crosses it within four seconds, turning, and is out of the box from the third on.
 fn box_and_ball() -> Scene {
@@ -78,7 +78,11 @@ fn check(
 fn frames_have_the_bits_of_whole_builds_in_any_order() {
     let (backend, scene) = (CpuBackend::with_threads(2).unwrap(), box_and_ball());
     let uncapped = lookups("icosahedron:80", 40);
-    for settings in [LookupSettings { layers: Some(2), ..uncapped.clone() }, uncapped] {
+    for settings in [
+        LookupSettings { layers: Some(2), ..uncapped.clone() },
+        LookupSettings { elements: Elements::Layers(3), ..uncapped.clone() },
+        uncapped,
+    ] {
         for order in [[0.0, 0.5, 1.0, 1.5], [1.5, 0.0, 1.0, 0.5]] {
             let mut kept = Kept::new();
             let counts = order.map(|at| check(&backend, &mut kept, &frame(&scene, at), &settings));
@@ -111,6 +115,7 @@ fn other_settings_are_built_anew() {
         lookups("icosahedron:20", 40),
         LookupSettings { layers: Some(3), ..first.clone() },
         LookupSettings { cone: false, ..first.clone() },
+        LookupSettings { elements: Elements::Packed, ..first.clone() },
         first.clone(),
     ] {
         assert_eq!(check(&backend, &mut kept, &scene, &other), 0);

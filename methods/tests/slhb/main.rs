@@ -9,7 +9,7 @@ use twinlight_core::Backend;
 use twinlight_core::scene::{Camera, CompiledScene, Limits, compile};
 use twinlight_fixtures::scenes::builtin;
 use twinlight_methods::reference::{self, Control, Film, Settings};
-use twinlight_methods::slhb::{LookupSettings, build, render, sheet};
+use twinlight_methods::slhb::{Elements, LookupSettings, build, render, sheet};
 
 struct Room {
     backend: CpuBackend,
@@ -127,6 +127,49 @@ fn a_cap_keeps_the_nearest() {
     let left_out: u32 = room.backend.download(&capped.lhb.left_out).unwrap().iter().sum();
     assert_eq!(capped.elements(&room.backend) + left_out as usize, all.elements(&room.backend));
     assert!(capped.bytes(&room.backend) > 0);
+}
+
+/// Measured: 0.99994 of the light that full elements give.
+#[test]
+fn packed_elements_give_the_same_light() {
+    let room = Room::new("cornell", 2);
+    let settings = settings(32, 16, 4);
+    let light = |elements| {
+        mean(&room.looked_up(&LookupSettings { elements, ..lookups("icosahedron:80", 64) }, &settings))
+    };
+    let full = light(Elements::Full);
+    for elements in [Elements::Packed, Elements::Layers(16)] {
+        let ratio = light(elements) / full;
+        assert!(ratio != 1.0 && (ratio - 1.0).abs() < 0.005, "{elements}: {ratio}");
+    }
+}
+
+#[test]
+fn elements_say_what_they_are() {
+    for elements in [Elements::Full, Elements::Packed, Elements::Layers(16)] {
+        assert_eq!(elements.to_string().parse::<Elements>().unwrap(), elements);
+    }
+    let room = Room::new("cornell", 2);
+    let none = LookupSettings { elements: Elements::Layers(0), ..lookups("icosahedron:20", 32) };
+    let refused = build(&room.backend, &room.scene, &none).map(|_| ()).unwrap_err().to_string();
+    assert_eq!(refused, "elements: no layers hold no elements");
+}
+
+/// More triangles than a word numbers: refused before anything is drawn, and no more than that.
+#[test]
+fn too_many_triangles_are_refused() {
+    let mut scene = Room::new("cornell", 2).scene;
+    let triangle = scene.triangles[0];
+    scene.triangles.resize((1 << 20) - 1, triangle);
+    let packed = LookupSettings { elements: Elements::Packed, ..lookups("icosahedron:20", 1) };
+    let backend = CpuBackend::new();
+    assert!(build(&backend, &scene, &packed).is_ok());
+    scene.triangles.push(triangle);
+    for elements in [Elements::Packed, Elements::Layers(3)] {
+        let settings = LookupSettings { elements, ..packed.clone() };
+        let refused = build(&backend, &scene, &settings).map(|_| ()).unwrap_err().to_string();
+        assert!(refused.contains("1048576") && refused.contains("1048575"), "{refused}");
+    }
 }
 
 #[test]
