@@ -65,7 +65,7 @@ pub fn time(backend: &CpuBackend, scene: &CompiledScene, arguments: &Arguments) 
             bytes as f64 / 1e6
         );
         match of_format {
-            None => println!("      built in {}", row(&laps[0], &laps[0])),
+            None => println!("      built in {}", wall(&laps[0])),
             Some(step) => println!(
                 "      packed in {}; read back in {}",
                 row(&laps[step], &laps[0]),
@@ -84,10 +84,17 @@ pub fn time(backend: &CpuBackend, scene: &CompiledScene, arguments: &Arguments) 
 
 /// Such as `12.0 ms, 3.1 % (2.9 to 3.3) of the build's processor time`.
 fn row(laps: &[Lap], build: &[Lap]) -> String {
-    let wall = spread(laps.iter().map(|lap| lap.1 * 1e3).collect());
     let share = spread(laps.iter().zip(build).map(|(lap, build)| lap.0 / build.0 * 100.0).collect());
     format!(
-        "{:.1} ms ({:.1} to {:.1}), {:.1} % ({:.1} to {:.1}) of the build's processor time",
-        wall.0, wall.1, wall.2, share.0, share.1, share.2
+        "{}, {:.1} % ({:.1} to {:.1}) of the build's processor time",
+        wall(laps),
+        share.0,
+        share.1,
+        share.2
     )
+}
+
+fn wall(laps: &[Lap]) -> String {
+    let (median, least, most) = spread(laps.iter().map(|lap| lap.1 * 1e3).collect());
+    format!("{median:.1} ms ({least:.1} to {most:.1})")
 }
