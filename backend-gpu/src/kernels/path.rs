@@ -10,7 +10,7 @@ use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
 
 /// Paths or pixels per workgroup; twin of the WGSL constant.
 pub const WORKGROUP_SIZE: u32 = 64;
-/// Paths under way at once at most: some 100 MiB of states. Fewer where a binding holds less.
+/// Paths under way at once at most: 80 to 144 MiB of states. Fewer where a binding holds less.
 pub const MAX_PATHS: u32 = 1 << 20;
 /// Segments per submission: their counts of living paths are the words of `status` behind the first.
 const SEGMENTS_PER_SUBMISSION: u32 = status::STATUS_WORDS as u32 - 1;
