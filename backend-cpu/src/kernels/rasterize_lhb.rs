@@ -123,10 +123,12 @@ impl Kernel for RasterizeView<'_> {
     fn run<W: Width>(self, width: W) -> ViewLists {
         let Self { mesh, view, params, workspace } = self;
         let Workspace { kept, fragments, lists } = workspace;
-        // [1] project, cull, cover
+        // [1] cull runs of triangles, by their boxes
+        // [2] project and cull triangles
+        // [3] cover
         fragments.clear();
         draw::draw::<W::U8>(width, mesh, view, params, kept, fragments);
-        // [2] sort lists
+        // [4] sort lists
         lists.sort(fragments, params)
     }
 }
@@ -144,7 +146,7 @@ fn gather(views: &[ViewLists], view_count: usize, params: &RasterizeLhbParams) -
     let mut offsets = try_zeroed::<u32>(view_count * pixels + 1)?;
     let mut left_out = try_zeroed::<u32>(if params.layer_cap > 0 { view_count * pixels } else { 0 })?;
     let mut elements = try_zeroed::<LhbElement>(count)?;
-    // [3] gather
+    // [5] gather
     let mut parts = Vec::with_capacity(views.len());
     let mut rest = elements.as_mut_slice();
     for view in views {
