@@ -243,8 +243,9 @@ fn films<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
     })
 }
 
-/// Walks of 16 × 16 pixels through 80 directions of 32². In strict mode the same bits, with shadow rays traced and looked up; else two estimates of one picture, as
-/// [`films`] compares them: what a lookup finds is decided by integers, but where it looks is not.
+/// Walks of 16 × 16 pixels through 80 directions of 32². In strict mode the same bits, with shadow rays traced, and looked up
+/// behind interleaved numbers; else two estimates of one picture, as [`films`] compares them: what a lookup finds is decided by
+/// integers, but where it looks is not.
 fn walks<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
     fn run<B: Backend>(
         backend: &B,
@@ -253,7 +254,8 @@ fn walks<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
         flags: u32,
     ) -> Result<Vec<FilmTexel>, Failure> {
         let prepared = Prepared::new(backend, compiled, "icosahedron:80", 32)?;
-        walked(backend, &prepared.flagged(flags), call)
+        let interleave = if flags == 0 { 1 } else { 5 };
+        walked(backend, &prepared.flagged(flags).interleaved(interleave), call)
     }
     let strict = both_strict(a, b);
     each_scene(|scene| {

@@ -157,7 +157,7 @@ pub trait Backend {
     /// [`crate::Error::LimitExceeded`] or [`crate::Error::OutOfMemory`] when the lists are too many or too long for the device.
     fn merge_lhb(&self, kept: &Lhb<Self>, added: &Lhb<Self>, params: &MergeLhbParams) -> Result<Lhb<Self>>;
 
-    /// Layered hit buffers in half the bytes. Contract: [`crate::kernels::pack_lhb`].
+    /// Layered hit buffers with elements in half the bytes. Contract: [`crate::kernels::pack_lhb`].
     ///
     /// # Errors
     /// [`crate::Error::InvalidInput`] for parameters that are out of range and for malformed buffers,

@@ -158,9 +158,18 @@ fn count(words: &[u32], layers: usize, lists: usize) -> Result<Vec<u32>> {
     Ok(offsets)
 }
 
-/// How many words come before the empty ones.
+/// How many words come before the empty ones. Not `partition_point`: between words of other origin its probes are its own.
 fn len_of(list: &[u32]) -> usize {
-    list.partition_point(|&word| word != EMPTY)
+    let (mut low, mut high) = (0, list.len());
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if list[middle] != EMPTY {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    low
 }
 
 fn unpack_layers(words: &[u32], layers: usize, offsets: &[u32]) -> Result<Vec<LhbElement>> {

@@ -108,7 +108,10 @@ fn look_up_batch<W: Width>(
     let mut spans = [Span::default(); BATCH];
     for (span, &list) in spans.iter_mut().zip(&places.lists) {
         let list = list as usize;
-        if let Some(&[begin, end]) = lhb.offsets.get(list..list + 2) {
+        // Offsets of other buffers may point beyond these elements.
+        if let Some(&[begin, end]) = lhb.offsets.get(list..list.wrapping_add(2))
+            && end as usize <= lhb.elements.len()
+        {
             *span = Span { begin, end };
             prefetch_item(lhb.elements, begin as usize);
         }

@@ -73,6 +73,8 @@ struct Leaving {
 /// What is looked up when its turn comes.
 trait Leaves {
     fn leaving(&self) -> Leaving;
+    /// Where its ray ends; [`FAR`] for one that doesn't.
+    fn reach(&self) -> f32;
     fn ray(&self) -> u32;
 }
 
@@ -81,6 +83,11 @@ impl Leaves for Walker {
     fn leaving(&self) -> Leaving {
         let Self { path, normal, leaves, ray, .. } = *self;
         Leaving { origin: path.origin, direction: path.direction, normal, leaves, ray }
+    }
+
+    #[inline(always)]
+    fn reach(&self) -> f32 {
+        FAR
     }
 
     #[inline(always)]
@@ -314,7 +321,8 @@ impl<W: Width> Wave<'_, W> {
             for ((query, found), &index) in queries.iter_mut().zip(&found).zip(batch) {
                 let Leaving { direction, normal, ray, .. } = rays[index as usize].leaving();
                 let view = &lhb.views[(ray >> 1) as usize];
-                *query = lhb_refined(lookup, view, query, normal, direction, *found);
+                let reach = rays[index as usize].reach();
+                *query = lhb_refined(lookup, view, query, normal, direction, reach, *found);
             }
             look_up(self.tracer.1, lhb, &queries[..batch.len()], &mut found);
         }

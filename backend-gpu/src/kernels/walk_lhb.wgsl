@@ -211,7 +211,7 @@ fn look_up_rays(
     }
     let direction = paths[index].path.direction;
     let normal = paths[index].normal;
-    let hit = met_along(paths[index].path.origin, direction, normal, leaves, nearest_ray(normal, direction));
+    let hit = met_along(paths[index].path.origin, direction, FAR, normal, leaves, nearest_ray(normal, direction));
     paths[index].slot = hit.slot;
     paths[index].u = hit.u;
     paths[index].v = hit.v;
@@ -232,13 +232,20 @@ fn nearest_ray(normal: vec3<f32>, direction: vec3<f32>) -> u32 {
 }
 
 // [7] lookup: along the line through the start, then through the hit
-fn met_along(origin: vec3<f32>, direction: vec3<f32>, normal: vec3<f32>, leaves: u32, ray: u32) -> LhbHit {
+fn met_along(
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    reach: f32,
+    normal: vec3<f32>,
+    leaves: u32,
+    ray: u32,
+) -> LhbHit {
     let view = views[ray >> 1u];
     let cone = (params.lookup.flags & CONE) != 0u;
     var query = lhb_query(params.lookup, view, ray, origin, normal, leaves);
     var found = look_up(query);
     if cone {
-        query = lhb_refined(params.lookup, view, query, normal, direction, found);
+        query = lhb_refined(params.lookup, view, query, normal, direction, reach, found);
         found = look_up(query);
     }
     return lhb_hit(params.lookup, view, query, origin, direction, found, cone);
@@ -263,8 +270,9 @@ fn look_up_shadows(
     let direction = paths[index].to_light;
     let normal = paths[index].normal;
     let ray = nearest_ray(normal, direction);
-    let hit = met_along(paths[index].path.origin, direction, normal, paths[index].leaves, ray);
-    if !lhb_shadows(params.lookup, hit, paths[index].light_distance) {
+    let reach = paths[index].light_distance;
+    let hit = met_along(paths[index].path.origin, direction, reach, normal, paths[index].leaves, ray);
+    if !lhb_shadows(params.lookup, hit, reach) {
         if order == 1u {
             paths[index].path.direct += paths[index].light;
         } else {

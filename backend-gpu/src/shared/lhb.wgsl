@@ -109,20 +109,29 @@ fn element_distance(view: View, query: LhbQuery, element: LhbElement) -> f32 {
     return select(0.0f, forward, forward > 0.0f);
 }
 
-// The lookup on the line that crosses the ray along `direction` where the first lookup met something.
+// The lookup on the line that crosses the ray along `direction` where the first lookup met something, or at the ray's end, `reach`
+// from its start, if that is nearer.
 fn lhb_refined(
     block: WalkLhbBlock,
     view: View,
     query: LhbQuery,
     normal: vec3<f32>,
     direction: vec3<f32>,
+    reach: f32,
     found: LhbElement,
 ) -> LhbQuery {
     let line = ray_direction(view, query.ray);
-    let cosine = dot_product(direction, line);
     // Coarse sets have directions at right angles to the ray.
-    let aside = direction * (1.0f / select(0.25f, cosine, cosine > 0.25f)) - line;
-    let offset = aside * element_distance(view, query, found);
+    let along_line = dot_product(direction, line);
+    let cosine = select(0.25f, along_line, along_line > 0.25f);
+    let met = element_distance(view, query, found);
+    // Not multiplied where it is no end: WGSL leaves overflow open.
+    var end = FAR;
+    if reach < FAR {
+        end = reach * block.steps_per_unit * cosine;
+    }
+    let aside = direction * (1.0f / cosine) - line;
+    let offset = aside * select(met, end, end < met);
     let distance = aside_at_most(block) + sqrt(dot_product(offset, offset));
     return LhbQuery(
         query.position,

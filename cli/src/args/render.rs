@@ -242,7 +242,7 @@ pub struct SlhbArgs {
     /// Surfaces that a pixel of a hit buffer keeps: all, or the nearest N
     #[arg(long, value_name = "N", env = "TWINLIGHT_LAYERS", default_value = "all")]
     pub layers: Layers,
-    /// How their elements are stored: full, packed (half the bytes, depths to 1/4096 of the scene), or layers:K (packed, the nearest K)
+    /// How their elements are stored: full, packed (half the bytes each, depths to 1/4096 of the scene), or layers:K (packed, the nearest K)
     #[arg(long, value_name = "FORMAT", env = "TWINLIGHT_ELEMENTS", default_value = "full", value_parser = elements)]
     pub elements: Elements,
     /// Whether lookups follow the ray or its nearest direction alone
@@ -257,7 +257,7 @@ pub struct SlhbArgs {
     /// Whether the first vertex of each path gathers light along all directions
     #[arg(long, value_name = "WHAT", env = "TWINLIGHT_GATHER", default_value = "off")]
     pub gather: GatherName,
-    /// Give every tile of N x N pixels the same random numbers, 1 to 32, so that --filter N finds all of them; 1 is off
+    /// Let diffuse surfaces scatter by the same random numbers in every tile of N x N pixels, 1 to 32, so that --filter N finds all of them; 1 is off
     #[arg(long, value_name = "N", env = "TWINLIGHT_INTERLEAVE", default_value_t = 1, value_parser = window())]
     pub interleave: u32,
     /// Average indirect light over N x N pixels that show the same diffuse surface, 1 to 32; 1 is off

@@ -3,7 +3,7 @@
 // cpu backend-cpu/src/kernels/pack_lhb.rs
 // gpu backend-gpu/src/kernels/pack_lhb.wgsl
 // oracle conformance/src/oracle/pack_lhb.rs
-//! `pack_lhb`: layered hit buffers in half the bytes, as lists or in a fixed number of layers, and back.
+//! `pack_lhb`: layered hit buffers with elements in half the bytes, as lists or in a fixed number of layers, and back.
 //!
 //! *Shapes.* [`LhbBuffers`] of V views of N × N pixels in, [`PackedLhbBuffers`] of as many out; and the way back. *Units.* Those of
 //! [`crate::kernels::rasterize_lhb`].

@@ -31,20 +31,24 @@
 //!    of an integral over drawn ones: sample s goes along direction s mod D, with the weight D·Ω·f·cos θ, Ω the solid angle that is nearer to
 //!    it than to others, and ends where that does not leave the surface. With a multiple of D samples each direction has the same
 //!    share. Its density in 3 is that of scattering, as if it had been drawn: the weights still add up to 1.
-//! 6. *Shadows.* With [`SHADOW_LOOKUPS`], the shadow rays of every vertex but the first are looked up as rays of 1 are, whatever [`TRACE_MISSES`]
-//!    says; with [`SHADOW_LOOKUPS_FIRST`] too, those of the first as well: the hit buffers are the shadow maps of all lights at once. With
-//!    L the distance to the sampled point of the light, the light is shadowed where the lookup finds a triangle which the ray meets
-//!    before [`crate::transport::light::SHADOW_REACH`]·L, or which the ray passes beside and whose nearest point to the lookup's line is,
-//!    along the ray, ahead of its start and more than [`crate::transport::lhb::shadow_margin`] before L: neither what is behind the
-//!    start nor what a pixel sees of the surface that carries the light is a shadow. Light from infinitely far, L = ∞, is shadowed by
-//!    all that is ahead. Sphere lights shadow as they do otherwise. Within its window a lookup from a front finds fronts only, from a back
-//!    backs ([`crate::kernels::query_lhb`]), so that a sheet which faces away shadows nothing next to it.
+//! 6. *Shadows.* With [`SHADOW_LOOKUPS`], the shadow rays of every vertex but the first are looked up as rays of 1 are, whatever
+//!    [`TRACE_MISSES`] says, but for a second line that crosses the ray at its end where the first line finds nothing nearer; with
+//!    [`SHADOW_LOOKUPS_FIRST`] too, those of the first as well: the hit buffers are the shadow maps of all lights at once. With L the
+//!    distance to the sampled point of the light, the light is shadowed where the lookup finds a triangle which the ray meets before
+//!    [`crate::transport::light::SHADOW_REACH`]·L, or which the ray passes beside and whose nearest point to the lookup's line is, along
+//!    the ray, ahead of its start and more than [`crate::transport::lhb::shadow_margin`] before L: neither what is behind the start nor
+//!    what a pixel sees of the surface that carries the light is a shadow. Light from infinitely far, L = ∞, is shadowed by all that is
+//!    ahead. Sphere lights shadow as they do otherwise. Without [`CONE`] rays are not
+//!    intersected: all that is found counts as passed beside. Within its window a lookup from a front finds fronts only, from a back backs
+//!    ([`crate::kernels::query_lhb`]), so that a sheet which faces away shadows nothing next to it.
 //!
 //! *Shapes.* The [`crate::kernels::rasterize_lhb::LhbBuffers`] of the set's lines, all layers, and the views they were made with;
 //! the mesh is the scene's ([`crate::lattice::LatticeMesh::of_scene`]), so that its triangles are the scene's slots; `film` as `trace_paths`.
 //! *Units, fixed point, order.* As `trace_paths`: a sum of integers, the same for any split and any order of lookups.
 //! *Error.* Biased: visibility is that of d through a pixel's centre. It falls with more directions and pixels.
-//! *Source.* Yu, spherical layered hit buffers; Veach and Guibas, "Optimally combining sampling techniques", 1995 (3).
+//! *Source.* Yu, spherical layered hit buffers, whose shadow maps are buffers of their own, filtered over neighbouring texels: here (6)
+//! a pixel's samples look up from as many points, which filters alike; Veach and Guibas, "Optimally combining sampling techniques",
+//! 1995 (3).
 
 use crate::accuracy::Accuracy;
 use crate::directions::MAX_RESOLUTION;

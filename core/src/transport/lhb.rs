@@ -42,7 +42,7 @@ pub struct LhbHit {
     pub v: f32,
     /// Distance along the ray; [`FAR`] where nothing is met.
     pub t: f32,
-    /// Whether the ray itself meets the triangle; else it passes beside, and the triangle's point next to the lookup's line stands in.
+    /// Whether the ray itself is known to meet the triangle; else the triangle's point next to the lookup's line stands in.
     pub is_exact: bool,
 }
 
@@ -134,7 +134,8 @@ fn element_distance(view: &View, query: &LhbQuery, element: LhbElement) -> f32 {
     if forward > 0.0 { forward } else { 0.0 }
 }
 
-/// The lookup on the line that crosses the ray along `direction` where the first lookup met something.
+/// The lookup on the line that crosses the ray along `direction` where the first lookup met something, or at the ray's end, `reach` from
+/// its start, if that is nearer.
 #[inline(always)]
 pub fn lhb_refined(
     block: &WalkLhbBlock,
@@ -142,13 +143,18 @@ pub fn lhb_refined(
     query: &LhbQuery,
     normal: Vec3,
     direction: Vec3,
+    reach: f32,
     found: LhbElement,
 ) -> LhbQuery {
     let along = ray_direction(view, query.ray);
-    let cosine = direction.dot(along);
     // Coarse sets have directions at right angles to the ray.
-    let aside = direction * (1.0 / if cosine > 0.25 { cosine } else { 0.25 }) - along;
-    let offset = aside * element_distance(view, query, found);
+    let cosine = direction.dot(along);
+    let cosine = if cosine > 0.25 { cosine } else { 0.25 };
+    let met = element_distance(view, query, found);
+    // Not multiplied where it is no end: WGSL leaves overflow open.
+    let end = if reach < FAR { reach * block.steps_per_unit * cosine } else { FAR };
+    let aside = direction * (1.0 / cosine) - along;
+    let offset = aside * if end < met { end } else { met };
     let distance = aside_at_most(block) + offset.dot(offset).sqrt();
     LhbQuery {
         offset: [screen_offset(view.right, offset), screen_offset(view.down, offset)],

@@ -18,7 +18,8 @@ use glam::Vec3;
 pub const FAR: f32 = 3.0e38;
 
 /// Shadow rays to a point are traced up to this share of their length, 1 − 2⁻²⁰: both ends are off their surfaces by
-/// error bounds, this covers the rounding of t itself (16 ulp; the sheared test makes about 10 roundings).
+/// error bounds, this covers the rounding of t itself (16 ulp; the sheared test makes about 10 roundings, and so does a ray's meeting with a
+/// triangle's plane).
 pub const SHADOW_REACH: f32 = 0.999_999_05;
 
 /// Light that may arrive from one direction.

@@ -42,8 +42,8 @@ pub struct LookupSettings {
     /// Whether light at first vertices is a sum over all directions: the deterministic gather. Samples are best a multiple of their
     /// number.
     pub gather: bool,
-    /// Pixels per row and column of an interleaved pattern: pixels that far apart draw the same random numbers, so that [`super::filter()`] finds
-    /// every pattern in its window. 1 gives every pixel numbers of its own.
+    /// Pixels per row and column of an interleaved pattern: from diffuse surfaces on, paths of pixels that far apart draw the same random
+    /// numbers, so that [`super::filter()`] finds every pattern in its window. 1 gives every pixel numbers of its own.
     pub interleave: u32,
 }
 

@@ -12,7 +12,7 @@ pub enum Elements {
     /// 8 bytes each, and nothing is lost.
     #[default]
     Full,
-    /// 4 bytes each: depths to a 4096th of the scene ([`twinlight_core::kernels::pack_lhb`]), below 2²⁰ − 1 triangles.
+    /// 4 bytes each: depths to a 4096th of the scene ([`twinlight_core::kernels::pack_lhb`]), at most 2²⁰ − 1 triangles.
     Packed,
     /// So many such words per pixel, for its nearest elements: Yu's layout. What has no room is lost.
     Layers(u32),

@@ -29,6 +29,11 @@ impl Leaves for Shadow {
     }
 
     #[inline(always)]
+    fn reach(&self) -> f32 {
+        self.distance
+    }
+
+    #[inline(always)]
     fn ray(&self) -> u32 {
         self.leaving.ray
     }

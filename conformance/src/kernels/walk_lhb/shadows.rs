@@ -19,8 +19,8 @@ use twinlight_fixtures::meshes::{quad, with_material};
 
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "walk_lhb":
-        lights_that_nothing_shadows, squares_shadow, walls_keep_light_out, direct_light_keeps_its_shadows,
-        shadows_are_looked_up, any_split_with_shadow_lookups,
+        lights_that_nothing_shadows, squares_shadow, lines_cross_no_farther_than_the_light, walls_keep_light_out,
+        direct_light_keeps_its_shadows, shadows_are_looked_up, any_split_with_shadow_lookups,
     );
 }
 
@@ -93,13 +93,51 @@ fn lights_that_nothing_shadows<B: Backend>(cx: &Context<'_, B>) -> Check {
 }
 
 /// A square between the lights and the picture is a shadow, and beside them it is none. Where a first lookup finds nothing, the second one's
-/// line is aside by the lattice's radius times the set's, and passes 1.4 from the middle at the height of the squares.
+/// line to a sky is aside by the lattice's radius times the set's, and passes 1.4 from the middle at the height of the squares.
 fn squares_shadow<B: Backend>(cx: &Context<'_, B>) -> Check {
     for case in small_floors() {
         same_light(cx, &case, &with_square(case.scene.clone(), 0.0), true)?;
         same_light(cx, &case, &with_square(case.scene.clone(), -2.2), false)?;
     }
     Ok(())
+}
+
+/// A light 0.3 above the middle of a floor of 4 × 4, below it a black ceiling with a hole, at half the way, which faces the floor. Rays
+/// from what the camera sees pass the hole, and so do lines that cross them no farther than the light. At the lattice's radius, nine
+/// times as far, lines are aside by more than the hole is wide.
+fn light_in_a_hole() -> Scene {
+    let mut scene = Scene { materials: vec![Material::diffuse("white", [0.8; 3])], ..Scene::default() };
+    scene.add_mesh(quad([-2.0, 0.0, 2.0], [2.0, 0.0, 2.0], [2.0, 0.0, -2.0], [-2.0, 0.0, -2.0]));
+    let black = scene.add_material(Material::diffuse("black", [0.0; 3]));
+    let (y, hole, end) = (0.15, 0.3, 2.0);
+    for [left, right, far, near] in [
+        [-end, end, hole, end],
+        [-end, end, -end, -hole],
+        [-end, -hole, -hole, hole],
+        [hole, end, -hole, hole],
+    ] {
+        let part = quad([left, y, far], [right, y, far], [right, y, near], [left, y, near]);
+        scene.add_mesh(with_material(part, black));
+    }
+    scene.lights.push(Light::Point { position: [0.0, 0.3, 0.0], intensity: [1.0; 3] });
+    scene.camera = Some(Camera {
+        position: [0.0, 0.25, 0.05],
+        target: [0.0; 3],
+        up: [0.0, 1.0, 0.0],
+        vfov_degrees: 30.0,
+    });
+    scene
+}
+
+/// What is aside of a ray and beyond its light shadows nothing: the film of traced shadow rays.
+fn lines_cross_no_farther_than_the_light<B: Backend>(cx: &Context<'_, B>) -> Check {
+    let scene = light_in_a_hole();
+    let compiled = compiled(&scene);
+    let call = TracePathsParams { sampler: SAMPLER_SOBOL, ..params(&scene, &compiled, SIZE, 4, Some(1))? };
+    let prepared = Prepared::new(cx.backend, &compiled, "icosahedron:80", 256)?;
+    let want = flagged(cx, &prepared, &call, CONE | TRACE_MISSES)?;
+    ensure(want.iter().all(|texel| wide(texel.direct[1]) > 0), || "a pixel is dark when traced".into())?;
+    exact(cx, "film", &flagged(cx, &prepared, &call, CONE | TRACE_MISSES | ALL)?, &want, LINE)
 }
 
 /// Across a box of height and depth 1.

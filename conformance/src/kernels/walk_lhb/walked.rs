@@ -42,6 +42,12 @@ impl<B: Backend> Prepared<B> {
         self
     }
 
+    /// With patterns of that many pixels per row and column.
+    pub(crate) fn interleaved(mut self, interleave: u32) -> Self {
+        self.buffers.lookup.interleave = interleave;
+        self
+    }
+
     /// Adds to a film.
     pub(super) fn walk(
         &self,
