@@ -46,7 +46,8 @@ fn is_of_merges(fault: Fault) -> bool {
     crate::faults::FAULTS.iter().any(|(of, kernel, _)| *of == fault && *kernel == "merge_lhb")
 }
 
-fn host<B: Backend>(inner: &B, lhb: &Lhb<B>) -> Result<Lists> {
+/// The lists of a device.
+pub(super) fn host<B: Backend>(inner: &B, lhb: &Lhb<B>) -> Result<Lists> {
     Ok(Lists {
         offsets: inner.download(&lhb.offsets)?,
         elements: inner.download(&lhb.elements)?,
@@ -54,7 +55,8 @@ fn host<B: Backend>(inner: &B, lhb: &Lhb<B>) -> Result<Lists> {
     })
 }
 
-fn are_lists(lists: &Lists) -> bool {
+/// Whether offsets rise from 0 to the number of elements.
+pub(super) fn are_lists(lists: &Lists) -> bool {
     let ends = (lists.offsets.first(), lists.offsets.last());
     ends == (Some(&0), Some(&(lists.elements.len() as u32))) && lists.offsets.is_sorted()
 }

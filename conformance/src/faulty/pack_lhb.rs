@@ -1,5 +1,6 @@
 //! Bugs in `pack_lhb`: a packing on the host, wrong in one step.
 
+use super::merge_lhb::{are_lists, host};
 use crate::faults::Fault;
 use crate::oracle::pack_lhb::{Packed, element_of, unpack, word_of};
 use crate::oracle::rasterize_lhb::Lists;
@@ -71,19 +72,6 @@ pub(super) fn unpack_lhb<B: Backend>(inner: &B, fault: Fault, packed: &PackedLhb
 
 fn is_of_packing(fault: Fault) -> bool {
     crate::faults::FAULTS.iter().any(|(of, kernel, _)| *of == fault && *kernel == "pack_lhb")
-}
-
-fn host<B: Backend>(inner: &B, lhb: &Lhb<B>) -> Result<Lists> {
-    Ok(Lists {
-        offsets: inner.download(&lhb.offsets)?,
-        elements: inner.download(&lhb.elements)?,
-        left_out: inner.download(&lhb.left_out)?,
-    })
-}
-
-fn are_lists(lists: &Lists) -> bool {
-    let ends = (lists.offsets.first(), lists.offsets.last());
-    ends == (Some(&0), Some(&(lists.elements.len() as u32))) && lists.offsets.is_sorted()
 }
 
 /// Offsets that rise within their elements, instead of ones that don't.
