@@ -16,12 +16,15 @@ use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
+use twinlight_core::kernels::reduce_mips::{self, ReduceMipsParams, VoxelLevels, VoxelLight};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use twinlight_core::kernels::sum_voxels::{self, VoxelSums, VoxelSurface};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use twinlight_core::kernels::voxelize::{VoxelizeParams, Voxels};
 use twinlight_core::kernels::walk_lhb::WalkLhbParams;
 use twinlight_core::kernels::{scan, sort};
-use twinlight_core::lattice::{LatticeMesh, View, subpixel_bits};
+use twinlight_core::lattice::{LatticeMesh, View, VoxelGrid, subpixel_bits};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, BackendInfo, Error, Result};
 
@@ -303,6 +306,43 @@ impl Backend for CpuBackend {
                 output,
             )
         })
+    }
+
+    fn voxelize(&self, mesh: &CpuMesh, grid: &VoxelGrid, params: &VoxelizeParams) -> Result<Voxels<Self>> {
+        params.check(grid, mesh.len())?;
+        self.run("voxelize", || kernels::voxelize::voxelize(mesh, grid, params))
+    }
+
+    fn sum_voxels(
+        &self,
+        mesh: &CpuMesh,
+        voxels: &Voxels<Self>,
+        surfaces: &CpuBuffer<VoxelSurface>,
+        texels: &CpuBuffer<u32>,
+        params: &VoxelizeParams,
+    ) -> Result<CpuBuffer<VoxelSums>> {
+        let (surfaces, texels) = (surfaces.as_slice(), texels.as_slice());
+        let len = |buffer: &CpuBuffer<u32>| buffer.as_slice().len();
+        let active = sum_voxels::check(params, voxels, len, mesh.len(), surfaces.len())?;
+        self.run("sum_voxels", || {
+            kernels::sum_voxels::sum_voxels(mesh, voxels, surfaces, texels, params, active)
+        })
+    }
+
+    fn voxel_levels(&self, voxels: &Voxels<Self>) -> Result<VoxelLevels<Self>> {
+        reduce_mips::check_voxels(voxels, |buffer| buffer.as_slice().len())?;
+        self.run("voxel_levels", || kernels::reduce_mips::voxel_levels(voxels))
+    }
+
+    fn reduce_mips(
+        &self,
+        levels: &VoxelLevels<Self>,
+        leaves: &CpuBuffer<VoxelLight>,
+        params: &ReduceMipsParams,
+    ) -> Result<CpuBuffer<u32>> {
+        let leaves = leaves.as_slice();
+        let words = params.check(levels, |buffer| buffer.as_slice().len(), leaves.len())?;
+        self.run("reduce_mips", || kernels::reduce_mips::reduce_mips(levels, leaves, params.storage, words))
     }
 }
 

@@ -39,6 +39,13 @@ impl CpuMesh {
         Ok(Self { boxes, clusters, planes })
     }
 
+    /// The corners of a triangle.
+    #[inline(always)]
+    pub(crate) fn corners(&self, triangle: usize) -> [[i16; 3]; 3] {
+        let run = &self.clusters[triangle / (RUN * RUN)][triangle / RUN % RUN];
+        run.corners(triangle % RUN).map(|p| p.map(|c| c as i16))
+    }
+
     /// Number of triangles.
     pub(crate) fn len(&self) -> usize {
         self.planes.len()

@@ -15,11 +15,14 @@ use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
+use twinlight_core::kernels::reduce_mips::{ReduceMipsParams, VoxelLevels, VoxelLight};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use twinlight_core::kernels::sum_voxels::{VoxelSums, VoxelSurface};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use twinlight_core::kernels::voxelize::{VoxelizeParams, Voxels};
 use twinlight_core::kernels::walk_lhb::WalkLhbParams;
-use twinlight_core::lattice::{LatticeMesh, View};
+use twinlight_core::lattice::{LatticeMesh, View, VoxelGrid};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, BackendInfo, Result};
 
@@ -192,5 +195,33 @@ impl Backend for GpuBackend {
         output: &mut GpuBuffer<RadianceTexel>,
     ) -> Result<()> {
         filter_indirect::run(&self.device, gbuffer, diffuse, input, params, output)
+    }
+
+    fn voxelize(&self, _: &GpuMesh, _: &VoxelGrid, _: &VoxelizeParams) -> Result<Voxels<Self>> {
+        Err(twinlight_core::Error::Internal("voxelize: not there yet".into()))
+    }
+
+    fn sum_voxels(
+        &self,
+        _: &GpuMesh,
+        _: &Voxels<Self>,
+        _: &GpuBuffer<VoxelSurface>,
+        _: &GpuBuffer<u32>,
+        _: &VoxelizeParams,
+    ) -> Result<GpuBuffer<VoxelSums>> {
+        Err(twinlight_core::Error::Internal("sum_voxels: not there yet".into()))
+    }
+
+    fn voxel_levels(&self, _: &Voxels<Self>) -> Result<VoxelLevels<Self>> {
+        Err(twinlight_core::Error::Internal("voxel_levels: not there yet".into()))
+    }
+
+    fn reduce_mips(
+        &self,
+        _: &VoxelLevels<Self>,
+        _: &GpuBuffer<VoxelLight>,
+        _: &ReduceMipsParams,
+    ) -> Result<GpuBuffer<u32>> {
+        Err(twinlight_core::Error::Internal("reduce_mips: not there yet".into()))
     }
 }

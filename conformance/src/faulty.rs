@@ -19,11 +19,14 @@ use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
+use twinlight_core::kernels::reduce_mips::{ReduceMipsParams, VoxelLevels, VoxelLight};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use twinlight_core::kernels::sum_voxels::{VoxelSums, VoxelSurface};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use twinlight_core::kernels::voxelize::{VoxelizeParams, Voxels};
 use twinlight_core::kernels::walk_lhb::WalkLhbParams;
-use twinlight_core::lattice::{LatticeMesh, View};
+use twinlight_core::lattice::{LatticeMesh, View, VoxelGrid};
 use twinlight_core::scene::CompiledScene;
 use twinlight_core::{Backend, BackendInfo, Result};
 
@@ -195,5 +198,33 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         output: &mut B::Buffer<RadianceTexel>,
     ) -> Result<()> {
         filter_indirect::filter_indirect(self.inner, self.fault, gbuffer, diffuse, input, params, output)
+    }
+
+    fn voxelize(&self, mesh: &Self::Mesh, grid: &VoxelGrid, params: &VoxelizeParams) -> Result<Voxels<Self>> {
+        self.inner.voxelize(&mesh.inner, grid, params)
+    }
+
+    fn sum_voxels(
+        &self,
+        mesh: &Self::Mesh,
+        voxels: &Voxels<Self>,
+        surfaces: &B::Buffer<VoxelSurface>,
+        texels: &B::Buffer<u32>,
+        params: &VoxelizeParams,
+    ) -> Result<B::Buffer<VoxelSums>> {
+        self.inner.sum_voxels(&mesh.inner, voxels, surfaces, texels, params)
+    }
+
+    fn voxel_levels(&self, voxels: &Voxels<Self>) -> Result<VoxelLevels<Self>> {
+        self.inner.voxel_levels(voxels)
+    }
+
+    fn reduce_mips(
+        &self,
+        levels: &VoxelLevels<Self>,
+        leaves: &B::Buffer<VoxelLight>,
+        params: &ReduceMipsParams,
+    ) -> Result<B::Buffer<u32>> {
+        self.inner.reduce_mips(levels, leaves, params)
     }
 }

@@ -6,11 +6,14 @@ use crate::kernels::merge_lhb::MergeLhbParams;
 use crate::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use crate::kernels::query_lhb::LhbQuery;
 use crate::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
+use crate::kernels::reduce_mips::{ReduceMipsParams, VoxelLevels, VoxelLight};
 use crate::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use crate::kernels::sum_voxels::{VoxelSums, VoxelSurface};
 use crate::kernels::trace::{Hit, Ray};
 use crate::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use crate::kernels::voxelize::{VoxelizeParams, Voxels};
 use crate::kernels::walk_lhb::WalkLhbParams;
-use crate::lattice::{LatticeMesh, View};
+use crate::lattice::{LatticeMesh, View, VoxelGrid};
 use crate::scene::CompiledScene;
 use bytemuck::Pod;
 
@@ -213,4 +216,43 @@ pub trait Backend {
         params: &FilterIndirectParams,
         output: &mut Self::Buffer<RadianceTexel>,
     ) -> Result<()>;
+
+    /// Which voxels a mesh passes through. Contract: [`crate::kernels::voxelize`].
+    ///
+    /// # Errors
+    /// As [`VoxelizeParams::check`]; [`crate::Error::LimitExceeded`] or [`crate::Error::OutOfMemory`] when the voxels are too many for
+    /// the device.
+    fn voxelize(&self, mesh: &Self::Mesh, grid: &VoxelGrid, params: &VoxelizeParams) -> Result<Voxels<Self>>;
+
+    /// Sums over the triangles that meet each active voxel. Contract: [`crate::kernels::sum_voxels`].
+    ///
+    /// # Errors
+    /// As [`crate::kernels::sum_voxels::check`] and [`crate::kernels::sum_voxels::check_fragments`];
+    /// [`crate::Error::LimitExceeded`] or [`crate::Error::OutOfMemory`] when the sums are too many for the device.
+    fn sum_voxels(
+        &self,
+        mesh: &Self::Mesh,
+        voxels: &Voxels<Self>,
+        surfaces: &Self::Buffer<VoxelSurface>,
+        texels: &Self::Buffer<u32>,
+        params: &VoxelizeParams,
+    ) -> Result<Self::Buffer<VoxelSums>>;
+
+    /// The levels above a grid of voxels. Contract: [`crate::kernels::reduce_mips`].
+    ///
+    /// # Errors
+    /// As [`crate::kernels::reduce_mips::check_voxels`]; [`crate::Error::OutOfMemory`] when the device can't hold them.
+    fn voxel_levels(&self, voxels: &Voxels<Self>) -> Result<VoxelLevels<Self>>;
+
+    /// What the voxels of all levels store of the light in them. Contract: [`crate::kernels::reduce_mips`].
+    ///
+    /// # Errors
+    /// As [`ReduceMipsParams::check`]; [`crate::Error::LimitExceeded`] or [`crate::Error::OutOfMemory`] when the values are too many for
+    /// the device.
+    fn reduce_mips(
+        &self,
+        levels: &VoxelLevels<Self>,
+        leaves: &Self::Buffer<VoxelLight>,
+        params: &ReduceMipsParams,
+    ) -> Result<Self::Buffer<u32>>;
 }

@@ -9,13 +9,17 @@
 //! *What snapping costs.* A vertex moves by at most half a [`Lattice::step`] per axis, 2⁻¹⁶ of the scene's radius. Vertices at
 //! one place stay at one place, so a closed mesh stays closed.
 
+mod grid;
 mod mesh;
 mod plane;
 mod view;
+mod voxel;
 
+pub use grid::{COORDINATE_BITS, MAX_VOXELS, SCALE_BITS, VoxelGrid, mask_words};
 pub use mesh::LatticeMesh;
 pub use plane::LatticePlane;
 pub use view::{DEPTH_ORIGIN, MAX_SIZE, View, subpixel_bits};
+pub use voxel::{VoxelTriangle, WEIGHT_BITS, others};
 
 pub(crate) use view::check_size;
 

@@ -8,11 +8,14 @@ use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
 use twinlight_core::kernels::rasterize_lhb::{Lhb, LhbElement, RasterizeLhbParams};
+use twinlight_core::kernels::reduce_mips::{ReduceMipsParams, VoxelLevels, VoxelLight};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use twinlight_core::kernels::sum_voxels::{VoxelSums, VoxelSurface};
 use twinlight_core::kernels::trace::{Hit, Ray};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
+use twinlight_core::kernels::voxelize::{VoxelizeParams, Voxels};
 use twinlight_core::kernels::walk_lhb::WalkLhbParams;
-use twinlight_core::lattice::{LatticeMesh, View};
+use twinlight_core::lattice::{LatticeMesh, View, VoxelGrid};
 use twinlight_core::scene::{CompiledScene, Limits, compile};
 use twinlight_core::{Backend, BackendInfo, Error, Result};
 use twinlight_fixtures::scenes::builtin;
@@ -138,6 +141,34 @@ impl Backend for Cramped {
         _: &WalkLhbParams,
         _: &mut Buffer<FilmTexel>,
     ) -> Result<()> {
+        unreachable!("{OTHER}")
+    }
+
+    fn voxelize(&self, _: &CpuMesh, _: &VoxelGrid, _: &VoxelizeParams) -> Result<Voxels<Self>> {
+        unreachable!("{OTHER}")
+    }
+
+    fn sum_voxels(
+        &self,
+        _: &CpuMesh,
+        _: &Voxels<Self>,
+        _: &Buffer<VoxelSurface>,
+        _: &Buffer<u32>,
+        _: &VoxelizeParams,
+    ) -> Result<Buffer<VoxelSums>> {
+        unreachable!("{OTHER}")
+    }
+
+    fn voxel_levels(&self, _: &Voxels<Self>) -> Result<VoxelLevels<Self>> {
+        unreachable!("{OTHER}")
+    }
+
+    fn reduce_mips(
+        &self,
+        _: &VoxelLevels<Self>,
+        _: &Buffer<VoxelLight>,
+        _: &ReduceMipsParams,
+    ) -> Result<Buffer<u32>> {
         unreachable!("{OTHER}")
     }
 }
