@@ -310,7 +310,7 @@ impl Backend for CpuBackend {
 
     fn voxelize(&self, mesh: &CpuMesh, grid: &VoxelGrid, params: &VoxelizeParams) -> Result<Voxels<Self>> {
         params.check(grid, mesh.len())?;
-        self.run("voxelize", || kernels::voxelize::voxelize(mesh, grid, params))
+        self.run("voxelize", || kernels::voxelize::voxelize(self.isa, mesh, grid, params))
     }
 
     fn sum_voxels(

@@ -8,10 +8,10 @@ use std::arch::x86_64::{
     _mm256_or_si256, _mm256_permute2x128_si256, _mm256_set1_epi8, _mm256_set1_epi32, _mm256_set1_ps,
     _mm256_setr_epi8, _mm256_setzero_si256, _mm256_shuffle_epi8, _mm256_sra_epi32, _mm256_srai_epi32,
     _mm256_srl_epi32, _mm256_srli_epi16, _mm256_srli_epi32, _mm256_storeu_ps, _mm256_storeu_si256,
-    _mm256_unpackhi_epi32, _mm256_unpackhi_epi64, _mm256_unpacklo_epi32, _mm256_unpacklo_epi64,
-    _mm256_xor_si256,
+    _mm256_sub_epi32, _mm256_unpackhi_epi32, _mm256_unpackhi_epi64, _mm256_unpacklo_epi32,
+    _mm256_unpacklo_epi64, _mm256_xor_si256,
 };
-use std::ops::{Add, BitAnd, BitXor, Mul};
+use std::ops::{Add, BitAnd, BitXor, Mul, Sub};
 
 /// Eight words. Only made from an [`Avx2`], or from other words.
 #[derive(Clone, Copy)]
@@ -31,6 +31,7 @@ macro_rules! operators {
 }
 operators!(
     Add add _mm256_add_epi32,
+    Sub sub _mm256_sub_epi32,
     Mul mul _mm256_mullo_epi32,
     BitAnd bitand _mm256_and_si256,
     BitXor bitxor _mm256_xor_si256

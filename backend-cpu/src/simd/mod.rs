@@ -62,9 +62,14 @@ pub trait Lanes:
     fn le(self, other: Self) -> Self::Mask;
 }
 
-/// A vector of eight `u32`; sums and products wrap.
+/// A vector of eight `u32`; sums, differences and products wrap.
 pub trait Words:
-    Copy + Add<Output = Self> + Mul<Output = Self> + BitAnd<Output = Self> + BitXor<Output = Self>
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + BitAnd<Output = Self>
+    + BitXor<Output = Self>
 {
     /// Proof that the instructions exist.
     type Token: Copy;

@@ -13,7 +13,7 @@ use sse2 as ops;
 
 use super::Words;
 use std::marker::PhantomData;
-use std::ops::{Add, BitAnd, BitXor, Mul};
+use std::ops::{Add, BitAnd, BitXor, Mul, Sub};
 
 /// Eight words; `W` is the token of the width they serve.
 #[derive(Clone, Copy)]
@@ -30,7 +30,7 @@ macro_rules! operators {
         }
     )*};
 }
-operators!(Add add wrapping_add, Mul mul wrapping_mul, BitAnd bitand bitand, BitXor bitxor bitxor);
+operators!(Add add wrapping_add, Sub sub wrapping_sub, Mul mul wrapping_mul, BitAnd bitand bitand, BitXor bitxor bitxor);
 
 impl<W: Copy> Words for Array<W> {
     type Token = W;

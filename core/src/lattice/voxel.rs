@@ -101,7 +101,7 @@ impl VoxelTriangle {
         }
         let half = 1 << (s - 1);
         let sum: i64 = self.normal.iter().map(|c| i64::from(c.abs())).sum();
-        let reach = i64::from(half + MARGIN) * sum;
+        let reach = i64::from(self.half_width()) * sum;
         // Heights of centres, rounded to the inside.
         let top = p0[axis] + (reach - q).div_euclid(n) as i32;
         let bottom = p0[axis] - (reach + q).div_euclid(n) as i32;
@@ -186,12 +186,17 @@ impl VoxelTriangle {
         })
     }
 
+    /// Half of what counts as a voxel's width.
+    #[inline(always)]
+    pub fn half_width(&self) -> i32 {
+        (1 << (self.subvoxel_bits - 1)) + if self.conservative { MARGIN } else { 0 }
+    }
+
     /// How far outside of an edge a centre may be, times the edge's step.
     #[inline(always)]
-    fn allowance(&self, step: [i32; 2]) -> i32 {
-        let half = 1 << (self.subvoxel_bits - 1);
+    pub fn allowance(&self, step: [i32; 2]) -> i32 {
         let [dx, dy] = step.map(i32::abs);
-        if self.conservative { (half + MARGIN) * (dx + dy) } else { half * dx.max(dy) }
+        self.half_width() * if self.conservative { dx + dy } else { dx.max(dy) }
     }
 }
 
