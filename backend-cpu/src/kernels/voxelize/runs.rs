@@ -41,18 +41,23 @@ pub(super) struct Runs<'a, U> {
 impl<'a, U: Words> Runs<'a, U> {
     #[inline(always)]
     pub(super) fn new(token: U::Token, grid: &VoxelGrid, marks: &'a Marks<'a>) -> Self {
-        let splat = |value: i32| U::splat(token, value as u32);
         let s = grid.subvoxel_bits;
+        let zero = U::splat(token, 0);
+        let (mut offset, mut last) = ([zero; 3], [zero; 3]);
+        for axis in 0..3 {
+            offset[axis] = U::splat(token, grid.offset[axis] as u32);
+            last[axis] = U::splat(token, (grid.dims[axis] << s) - 1);
+        }
         Self {
             marks,
-            scale: splat(grid.scale),
-            offset: grid.offset.map(splat),
-            last: grid.dims.map(|n| splat(((n << s) as i32) - 1)),
+            scale: U::splat(token, grid.scale as u32),
+            offset,
+            last,
             subvoxel_bits: s,
-            half: splat(1 << (s - 1)),
-            width: splat(1 << s),
-            zero: splat(0),
-            one: splat(1),
+            half: U::splat(token, 1 << (s - 1)),
+            width: U::splat(token, 1 << s),
+            zero,
+            one: U::splat(token, 1),
         }
     }
 
@@ -71,15 +76,25 @@ impl<'a, U: Words> Runs<'a, U> {
             left |= more.greater_signed(self.one);
             both[axis] = more.greater_signed(self.zero);
         }
-        let centre = low.map(|voxel| voxel * self.width + self.half);
+        let mut centre = low;
+        for c in &mut centre {
+            *c = *c * self.width + self.half;
+        }
         let normal = self.normal(&p);
         let plane = self.plane(&p[0], &centre, normal);
-        let inside = [0, 1, 2].map(|axis| self.inside(axis, &p, &centre, normal[axis]));
+        let mut inside = [[0; 4]; 3];
+        for (axis, inside) in inside.iter_mut().enumerate() {
+            *inside = self.inside(axis, &p, &centre, normal[axis]);
+        }
         let (mut met, mut any) = ([0_u32; 8], 0);
         for (o, met) in met.iter_mut().enumerate() {
             let [x, y, z] = [o & 1, o >> 1 & 1, o >> 2];
-            let there =
-                [x, y, z].iter().zip(both).fold(!left, |m, (&o, both)| if o == 1 { m & both } else { m });
+            let mut there = !left;
+            for (axis, both) in both.into_iter().enumerate() {
+                if o >> axis & 1 == 1 {
+                    there &= both;
+                }
+            }
             *met = plane.met[o] & inside[0][y + 2 * z] & inside[1][z + 2 * x] & inside[2][x + 2 * y] & there;
             any |= *met;
         }
@@ -108,6 +123,11 @@ impl<'a, U: Words> Runs<'a, U> {
     }
 
     #[inline(always)]
+    fn abs(&self, words: U) -> U {
+        words.greatest_signed(self.zero - words)
+    }
+
+    #[inline(always)]
     fn place(&self, point: U, axis: usize) -> U {
         let sum = self.scale * point + self.offset[axis];
         sum.shift_right_signed::<{ SCALE_BITS as i32 }>().clamp_signed(self.last[axis])
@@ -127,17 +147,23 @@ impl<'a, U: Words> Runs<'a, U> {
     /// Which of the eight voxels hold the plane's crossing of their columns; bit i is lane i's.
     #[inline(always)]
     fn plane(&self, p0: &[U; 3], centre: &[U; 3], normal: [U; 3]) -> Plane {
-        let [x, y, z] = normal.map(|n| n.greatest_signed(self.zero - n));
+        let [x, y, z] = [self.abs(normal[0]), self.abs(normal[1]), self.abs(normal[2])];
         let is_x = !y.greater_signed(x) & !z.greater_signed(x);
         let is_y = !is_x & !z.greater_signed(y);
-        let falls = normal.map(|n| self.zero.greater_signed(n));
+        let mut falls = [0; 3];
+        for (falls, n) in falls.iter_mut().zip(normal) {
+            *falls = self.zero.greater_signed(n);
+        }
         let turned = is_x & falls[0] | is_y & falls[1] | !(is_x | is_y) & falls[2];
         let greatest = x.greatest_signed(y).greatest_signed(z);
         let reach = greatest * self.half;
         let (most, least) = (reach, self.zero - reach);
         // −h < d ≤ h, or, where the normal is to be turned, −h ≤ d < h.
         let (below_least, below_most) = (least - self.one, most - self.one);
-        let steps = normal.map(|n| n * self.width);
+        let mut steps = normal;
+        for step in &mut steps {
+            *step = *step * self.width;
+        }
         let first = normal[0] * (centre[0] - p0[0])
             + normal[1] * (centre[1] - p0[1])
             + normal[2] * (centre[2] - p0[2]);
@@ -169,8 +195,7 @@ impl<'a, U: Words> Runs<'a, U> {
             let dx = ((to[b] - from[b]) ^ turn) - turn;
             let dy = ((to[c] - from[c]) ^ turn) - turn;
             let value = dx * (centre[c] - from[c]) - dy * (centre[b] - from[b]);
-            let longer =
-                dx.greatest_signed(self.zero - dx).greatest_signed(dy.greatest_signed(self.zero - dy));
+            let longer = self.abs(dx).greatest_signed(self.abs(dy));
             let at = value + longer * self.half;
             let (along, across) = (at - dy * self.width, dx * self.width);
             let cells = [at, along, at + across, along + across];

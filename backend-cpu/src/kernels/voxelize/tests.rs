@@ -30,7 +30,8 @@ fn mesh(reach: i16, size: i16) -> impl Strategy<Value = LatticeMesh> {
             let p = [0, 1, 2].map(|i| centre[i].saturating_add(step[i]).clamp(-reach, reach));
             if coarse { p.map(|c| c / 64 * 64) } else { p }
         };
-        let corners = triangles.iter().flat_map(|&(centre, steps, coarse)| steps.map(|s| corner(centre, s, coarse)));
+        let corners =
+            triangles.iter().flat_map(|&(centre, steps, coarse)| steps.map(|s| corner(centre, s, coarse)));
         let vertices: Vec<_> = corners.collect();
         let triangles = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         LatticeMesh::new(vertices, triangles).expect("in reach")
