@@ -1,6 +1,7 @@
 //! [`CpuBackend`]: checks the caller's lengths, then runs a kernel in a thread pool and turns a panic into an error.
 
 use crate::buffer::{CpuBuffer, try_copy, try_zeroed};
+use crate::kernels::light_voxels::Lit;
 use crate::kernels::query_lhb::LhbData;
 use crate::kernels::walk_lhb::Lookups;
 use crate::scratch::Scratch;
@@ -12,6 +13,7 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
+use twinlight_core::kernels::light_voxels::LightVoxelsBlock;
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
@@ -20,6 +22,7 @@ use twinlight_core::kernels::reduce_mips::{self, ReduceMipsParams, VoxelLevels, 
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::sum_voxels::{self, VoxelSums, VoxelSurface};
 use twinlight_core::kernels::trace::{Hit, Ray};
+use twinlight_core::kernels::trace_cones::{Cone, ConeLight, TraceConesBlock};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
 use twinlight_core::kernels::voxelize::{VoxelizeParams, Voxels};
 use twinlight_core::kernels::walk_lhb::WalkLhbParams;
@@ -343,6 +346,41 @@ impl Backend for CpuBackend {
         let leaves = leaves.as_slice();
         let words = params.check(levels, |buffer| buffer.as_slice().len(), leaves.len())?;
         self.run("reduce_mips", || kernels::reduce_mips::reduce_mips(levels, leaves, params.storage, words))
+    }
+
+    fn light_voxels(
+        &self,
+        scene: &CpuScene,
+        active: &CpuBuffer<u32>,
+        sums: &CpuBuffer<VoxelSums>,
+        gathered: &CpuBuffer<RadianceTexel>,
+        params: &LightVoxelsBlock,
+        leaves: &mut CpuBuffer<VoxelLight>,
+    ) -> Result<()> {
+        let (active, sums, gathered) = (active.as_slice(), sums.as_slice(), gathered.as_slice());
+        let leaves = leaves.as_mut_slice();
+        params.check([active.len(), sums.len(), gathered.len(), leaves.len()])?;
+        self.run("light_voxels", || {
+            let voxels = Lit { active, sums, gathered };
+            kernels::light_voxels::light_voxels(self.isa, scene.data(), voxels, params, leaves);
+            Ok(())
+        })
+    }
+
+    fn trace_cones(
+        &self,
+        levels: &VoxelLevels<Self>,
+        values: &CpuBuffer<u32>,
+        cones: &CpuBuffer<Cone>,
+        params: &TraceConesBlock,
+        light: &mut CpuBuffer<ConeLight>,
+    ) -> Result<()> {
+        let (values, cones, light) = (values.as_slice(), cones.as_slice(), light.as_mut_slice());
+        params.check(levels, |buffer| buffer.as_slice().len(), values.len(), [cones.len(), light.len()])?;
+        self.run("trace_cones", || {
+            kernels::trace_cones::trace_cones(levels, values, cones, params, light);
+            Ok(())
+        })
     }
 }
 

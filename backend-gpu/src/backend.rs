@@ -11,6 +11,7 @@ use crate::scene::GpuScene;
 use crate::strict::Mode;
 use bytemuck::Pod;
 use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
+use twinlight_core::kernels::light_voxels::LightVoxelsBlock;
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
@@ -19,6 +20,7 @@ use twinlight_core::kernels::reduce_mips::{ReduceMipsParams, VoxelLevels, VoxelL
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::sum_voxels::{VoxelSums, VoxelSurface};
 use twinlight_core::kernels::trace::{Hit, Ray};
+use twinlight_core::kernels::trace_cones::{Cone, ConeLight, TraceConesBlock};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
 use twinlight_core::kernels::voxelize::{VoxelizeParams, Voxels};
 use twinlight_core::kernels::walk_lhb::WalkLhbParams;
@@ -223,5 +225,28 @@ impl Backend for GpuBackend {
         _: &ReduceMipsParams,
     ) -> Result<GpuBuffer<u32>> {
         Err(twinlight_core::Error::Internal("reduce_mips: not there yet".into()))
+    }
+
+    fn light_voxels(
+        &self,
+        _: &GpuScene,
+        _: &GpuBuffer<u32>,
+        _: &GpuBuffer<VoxelSums>,
+        _: &GpuBuffer<RadianceTexel>,
+        _: &LightVoxelsBlock,
+        _: &mut GpuBuffer<VoxelLight>,
+    ) -> Result<()> {
+        Err(twinlight_core::Error::Internal("light_voxels: not there yet".into()))
+    }
+
+    fn trace_cones(
+        &self,
+        _: &VoxelLevels<Self>,
+        _: &GpuBuffer<u32>,
+        _: &GpuBuffer<Cone>,
+        _: &TraceConesBlock,
+        _: &mut GpuBuffer<ConeLight>,
+    ) -> Result<()> {
+        Err(twinlight_core::Error::Internal("trace_cones: not there yet".into()))
     }
 }

@@ -15,6 +15,7 @@ mod walk_lhb;
 use crate::faults::Fault;
 use bytemuck::Pod;
 use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
+use twinlight_core::kernels::light_voxels::LightVoxelsBlock;
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
@@ -23,6 +24,7 @@ use twinlight_core::kernels::reduce_mips::{ReduceMipsParams, VoxelLevels, VoxelL
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::sum_voxels::{VoxelSums, VoxelSurface};
 use twinlight_core::kernels::trace::{Hit, Ray};
+use twinlight_core::kernels::trace_cones::{Cone, ConeLight, TraceConesBlock};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
 use twinlight_core::kernels::voxelize::{VoxelizeParams, Voxels};
 use twinlight_core::kernels::walk_lhb::WalkLhbParams;
@@ -226,5 +228,28 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &ReduceMipsParams,
     ) -> Result<B::Buffer<u32>> {
         self.inner.reduce_mips(levels, leaves, params)
+    }
+
+    fn light_voxels(
+        &self,
+        scene: &Self::Scene,
+        active: &B::Buffer<u32>,
+        sums: &B::Buffer<VoxelSums>,
+        gathered: &B::Buffer<RadianceTexel>,
+        params: &LightVoxelsBlock,
+        leaves: &mut B::Buffer<VoxelLight>,
+    ) -> Result<()> {
+        self.inner.light_voxels(&scene.inner, active, sums, gathered, params, leaves)
+    }
+
+    fn trace_cones(
+        &self,
+        levels: &VoxelLevels<Self>,
+        values: &B::Buffer<u32>,
+        cones: &B::Buffer<Cone>,
+        params: &TraceConesBlock,
+        light: &mut B::Buffer<ConeLight>,
+    ) -> Result<()> {
+        self.inner.trace_cones(levels, values, cones, params, light)
     }
 }

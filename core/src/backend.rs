@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
+use crate::kernels::light_voxels::LightVoxelsBlock;
 use crate::kernels::merge_lhb::MergeLhbParams;
 use crate::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use crate::kernels::query_lhb::LhbQuery;
@@ -10,6 +11,7 @@ use crate::kernels::reduce_mips::{ReduceMipsParams, VoxelLevels, VoxelLight};
 use crate::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use crate::kernels::sum_voxels::{VoxelSums, VoxelSurface};
 use crate::kernels::trace::{Hit, Ray};
+use crate::kernels::trace_cones::{Cone, ConeLight, TraceConesBlock};
 use crate::kernels::trace_paths::{FilmTexel, TracePathsParams};
 use crate::kernels::voxelize::{VoxelizeParams, Voxels};
 use crate::kernels::walk_lhb::WalkLhbParams;
@@ -255,4 +257,31 @@ pub trait Backend {
         leaves: &Self::Buffer<VoxelLight>,
         params: &ReduceMipsParams,
     ) -> Result<Self::Buffer<u32>>;
+
+    /// The light that leaves active voxels. Contract: [`crate::kernels::light_voxels`].
+    ///
+    /// # Errors
+    /// As [`LightVoxelsBlock::check`].
+    fn light_voxels(
+        &self,
+        scene: &Self::Scene,
+        active: &Self::Buffer<u32>,
+        sums: &Self::Buffer<VoxelSums>,
+        gathered: &Self::Buffer<RadianceTexel>,
+        params: &LightVoxelsBlock,
+        leaves: &mut Self::Buffer<VoxelLight>,
+    ) -> Result<()>;
+
+    /// The light that comes through cones. Contract: [`crate::kernels::trace_cones`].
+    ///
+    /// # Errors
+    /// As [`TraceConesBlock::check`].
+    fn trace_cones(
+        &self,
+        levels: &VoxelLevels<Self>,
+        values: &Self::Buffer<u32>,
+        cones: &Self::Buffer<Cone>,
+        params: &TraceConesBlock,
+        light: &mut Self::Buffer<ConeLight>,
+    ) -> Result<()>;
 }

@@ -1,6 +1,7 @@
 //! The CPU twins. Contracts: [`twinlight_core::kernels`].
 
 pub(crate) mod filter_indirect;
+pub(crate) mod light_voxels;
 pub(crate) mod merge_lhb;
 pub(crate) mod pack_lhb;
 pub(crate) mod query_lhb;
@@ -11,6 +12,7 @@ pub(crate) mod shade_primary;
 pub(crate) mod sort;
 pub(crate) mod sum_voxels;
 pub(crate) mod trace;
+pub(crate) mod trace_cones;
 pub(crate) mod trace_paths;
 pub(crate) mod voxelize;
 pub(crate) mod walk_lhb;

@@ -2,6 +2,7 @@
 //! No algorithm; the twins are in the backends under the same stem.
 
 pub mod filter_indirect;
+pub mod light_voxels;
 pub mod merge_lhb;
 pub mod pack_lhb;
 pub mod query_lhb;
@@ -12,6 +13,7 @@ pub mod shade_primary;
 pub mod sort;
 pub mod sum_voxels;
 pub mod trace;
+pub mod trace_cones;
 pub mod trace_paths;
 pub mod voxelize;
 pub mod walk_lhb;

@@ -2,6 +2,7 @@
 //! `backend-gpu/src/shared/<stem>.wgsl`, function by function, operation by operation.
 
 pub mod bsdf;
+pub mod cone;
 pub mod environment;
 pub mod intersect;
 pub mod lhb;
@@ -9,6 +10,7 @@ pub mod light;
 pub mod offset;
 pub mod surface;
 pub mod texture;
+pub mod voxel_light;
 
 use crate::scene::{
     CompiledScene, EnvironmentHeader, LightRecord, MaterialRecord, Triangle, TriangleAttributes,

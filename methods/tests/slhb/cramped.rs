@@ -4,6 +4,7 @@ use crate::lookups;
 use bytemuck::Pod;
 use twinlight_backend_cpu::{CpuBackend, CpuBuffer, CpuMesh};
 use twinlight_core::kernels::filter_indirect::{FilterIndirectParams, RadianceTexel};
+use twinlight_core::kernels::light_voxels::LightVoxelsBlock;
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::pack_lhb::{PackLhbParams, PackedLhb};
 use twinlight_core::kernels::query_lhb::LhbQuery;
@@ -12,6 +13,7 @@ use twinlight_core::kernels::reduce_mips::{ReduceMipsParams, VoxelLevels, VoxelL
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::sum_voxels::{VoxelSums, VoxelSurface};
 use twinlight_core::kernels::trace::{Hit, Ray};
+use twinlight_core::kernels::trace_cones::{Cone, ConeLight, TraceConesBlock};
 use twinlight_core::kernels::trace_paths::{FilmTexel, TracePathsParams};
 use twinlight_core::kernels::voxelize::{VoxelizeParams, Voxels};
 use twinlight_core::kernels::walk_lhb::WalkLhbParams;
@@ -169,6 +171,29 @@ impl Backend for Cramped {
         _: &Buffer<VoxelLight>,
         _: &ReduceMipsParams,
     ) -> Result<Buffer<u32>> {
+        unreachable!("{OTHER}")
+    }
+
+    fn light_voxels(
+        &self,
+        _: &(),
+        _: &Buffer<u32>,
+        _: &Buffer<VoxelSums>,
+        _: &Buffer<RadianceTexel>,
+        _: &LightVoxelsBlock,
+        _: &mut Buffer<VoxelLight>,
+    ) -> Result<()> {
+        unreachable!("{OTHER}")
+    }
+
+    fn trace_cones(
+        &self,
+        _: &VoxelLevels<Self>,
+        _: &Buffer<u32>,
+        _: &Buffer<Cone>,
+        _: &TraceConesBlock,
+        _: &mut Buffer<ConeLight>,
+    ) -> Result<()> {
         unreachable!("{OTHER}")
     }
 }
