@@ -6,5 +6,6 @@ mod gbuffer;
 pub mod post;
 pub mod reference;
 pub mod slhb;
+pub mod voxel;
 
 pub use gbuffer::gbuffer;
