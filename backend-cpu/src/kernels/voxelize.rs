@@ -16,7 +16,7 @@ use twinlight_core::kernels::voxelize::{VoxelBuffers, VoxelizeParams, Voxels};
 use twinlight_core::lattice::{VoxelGrid, VoxelTriangle, others};
 use twinlight_core::math::morton::morton_code;
 
-mod lists;
+pub(crate) mod lists;
 
 /// Triangles per task.
 const CHUNK: usize = 1 << 10;

@@ -11,10 +11,7 @@ fn light(rgb: [u32; 3], opacity: u32) -> VoxelLight {
 #[test]
 fn constants_are_the_contracts() {
     let signed = |x: u32| i128::from(x);
-    assert_eq!(
-        [signed(contract::NEAR_LESS_FAR), signed(contract::TWO_THIRDS)],
-        [NEAR_LESS_FAR, TWO_THIRDS]
-    );
+    assert_eq!([signed(contract::NEAR_LESS_FAR), signed(contract::TWO_THIRDS)], [NEAR_LESS_FAR, TWO_THIRDS]);
 }
 
 #[test]
