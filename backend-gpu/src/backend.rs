@@ -3,8 +3,8 @@
 use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
 use crate::kernels::{
-    filter_indirect, merge_lhb, pack_lhb, query_lhb, rasterize_lhb, scan, shade_primary, sort, trace,
-    trace_paths, walk_lhb,
+    filter_indirect, merge_lhb, pack_lhb, query_lhb, rasterize_lhb, reduce_mips, scan, shade_primary, sort,
+    trace, trace_paths, walk_lhb,
 };
 use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
@@ -214,17 +214,17 @@ impl Backend for GpuBackend {
         Err(twinlight_core::Error::Internal("sum_voxels: not there yet".into()))
     }
 
-    fn voxel_levels(&self, _: &Voxels<Self>) -> Result<VoxelLevels<Self>> {
-        Err(twinlight_core::Error::Internal("voxel_levels: not there yet".into()))
+    fn voxel_levels(&self, voxels: &Voxels<Self>) -> Result<VoxelLevels<Self>> {
+        reduce_mips::levels(&self.device, voxels)
     }
 
     fn reduce_mips(
         &self,
-        _: &VoxelLevels<Self>,
-        _: &GpuBuffer<VoxelLight>,
-        _: &ReduceMipsParams,
+        levels: &VoxelLevels<Self>,
+        leaves: &GpuBuffer<VoxelLight>,
+        params: &ReduceMipsParams,
     ) -> Result<GpuBuffer<u32>> {
-        Err(twinlight_core::Error::Internal("reduce_mips: not there yet".into()))
+        reduce_mips::reduce(&self.device, levels, leaves, params)
     }
 
     fn light_voxels(

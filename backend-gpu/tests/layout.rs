@@ -5,14 +5,15 @@
 
 use std::mem::{offset_of, size_of};
 use twinlight_backend_gpu::kernels::{
-    self, filter_indirect, merge_lhb, pack_lhb, path, query_lhb, rasterize_lhb, scan, shade_primary, sort,
-    trace, trace_paths, walk_lhb,
+    self, filter_indirect, merge_lhb, pack_lhb, path, query_lhb, rasterize_lhb, reduce_mips, scan,
+    shade_primary, sort, trace, trace_paths, walk_lhb,
 };
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
     filter_indirect as filter_contract, merge_lhb as merge_contract, pack_lhb as pack_contract,
-    query_lhb as query_contract, rasterize_lhb as lhb_contract, shade_primary as shade_contract,
-    trace as trace_contract, trace_paths as paths_contract, walk_lhb as walk_contract,
+    query_lhb as query_contract, rasterize_lhb as lhb_contract, reduce_mips as mips_contract,
+    shade_primary as shade_contract, trace as trace_contract, trace_paths as paths_contract,
+    walk_lhb as walk_contract,
 };
 use twinlight_core::transport::{intersect, lhb, light};
 use twinlight_core::{bvh, lattice, math, scene, transport};
@@ -332,6 +333,36 @@ fn twins() -> Vec<Twins> {
                 ("WORKGROUP_SIZE", filter_indirect::WORKGROUP_SIZE.into()),
                 ("LEAST_ALBEDO", filter_contract::LEAST_ALBEDO.into()),
                 ("NO_HIT", trace_contract::NO_HIT.into()),
+            ],
+        },
+        Twins {
+            source: &reduce_mips::SOURCE,
+            structs: vec![
+                layout!(reduce_mips::ReduceMipsBlock {
+                    storage,
+                    padded,
+                    level_count,
+                    word_count,
+                    level,
+                    word_begin,
+                    word_end,
+                    below_word,
+                    value_begin,
+                    value_end,
+                    below_value,
+                    padding,
+                }),
+                layout!(mips_contract::VoxelLight { rgb, opacity }),
+            ],
+            constants: vec![
+                ("WORKGROUP_SIZE", reduce_mips::WORKGROUP_SIZE.into()),
+                ("ANISOTROPIC", mips_contract::ANISOTROPIC.into()),
+                ("HARMONICS", mips_contract::HARMONICS.into()),
+                ("SUMS", mips_contract::SUMS.into()),
+                ("RANGES", mips_contract::RANGES.into()),
+                ("OPAQUE", mips_contract::OPAQUE.into()),
+                ("NEAR_LESS_FAR", mips_contract::NEAR_LESS_FAR.into()),
+                ("TWO_THIRDS", mips_contract::TWO_THIRDS.into()),
             ],
         },
     ]

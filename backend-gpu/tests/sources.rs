@@ -105,6 +105,7 @@ fn exact_kernels_have_no_floats() {
         ("merge_lhb", contracts::merge_lhb::ACCURACY),
         ("pack_lhb", contracts::pack_lhb::ACCURACY),
         ("query_lhb", contracts::query_lhb::ACCURACY),
+        ("reduce_mips", contracts::reduce_mips::ACCURACY),
     ];
     let has_floats = |source: &KernelSource| {
         let module = source.check().expect("checked above").module;

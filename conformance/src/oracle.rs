@@ -6,6 +6,7 @@ pub mod merge_lhb;
 pub mod pack_lhb;
 pub mod query_lhb;
 pub mod rasterize_lhb;
+pub mod reduce_mips;
 pub mod scan;
 pub mod shade_primary;
 pub mod sort;

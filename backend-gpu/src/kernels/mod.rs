@@ -9,6 +9,7 @@ pub mod pack_lhb;
 pub mod path;
 pub mod query_lhb;
 pub mod rasterize_lhb;
+pub mod reduce_mips;
 pub mod scan;
 pub mod shade_primary;
 pub mod sort;
@@ -32,4 +33,5 @@ pub const ALL: &[&KernelSource] = &[
     &trace_paths::SOURCE,
     &walk_lhb::SOURCE,
     &filter_indirect::SOURCE,
+    &reduce_mips::SOURCE,
 ];

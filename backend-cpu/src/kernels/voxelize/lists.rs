@@ -37,7 +37,13 @@ pub(crate) fn ranks(mask: &[u32]) -> Result<Vec<u32>> {
 pub(crate) fn codes(mask: &[u32], ranks: &[u32]) -> Result<Vec<u32>> {
     // [5] list
     let mut codes = try_zeroed::<u32>(ranks[mask.len()] as usize)?;
-    let mut rest = codes.as_mut_slice();
+    fill_codes(mask, ranks, &mut codes);
+    Ok(codes)
+}
+
+/// The codes of set bits, ascending, in a slice of their number; `ranks` may begin with what comes before the mask.
+pub(crate) fn fill_codes(mask: &[u32], ranks: &[u32], codes: &mut [u32]) {
+    let mut rest = codes;
     let mut parts = Vec::new();
     for begin in (0..mask.len()).step_by(WORDS) {
         let end = mask.len().min(begin + WORDS);
@@ -56,7 +62,6 @@ pub(crate) fn codes(mask: &[u32], ranks: &[u32]) -> Result<Vec<u32>> {
             }
         }
     });
-    Ok(codes)
 }
 
 /// The codes of the next level.
