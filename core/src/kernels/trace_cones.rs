@@ -20,12 +20,20 @@
 //! 4. *Level.* w ≥ 1 is m·2ˡ with 1 ≤ m < 2. Its sample is (1 − f)·S(l) + f·S(l + 1) with f = m − 1, where f > 0 and l is not the last level; from the last
 //!    level on it is that of the last.
 //! 5. *Filter.* S(l): q = p·2⁻ˡ − ½, i = ⌊q⌋, g = q − i; the eight voxels i, i + 1 of level l, brought into the level's numbers of voxels, weigh
-//!    (1 − g) and g per axis, the products x·y·z. The sum runs over x first, then y, then z. A voxel that is not active is zero.
+//!    (1 − g) and g per axis, the products x·y·z. The sum runs over x first, then y, then z. A voxel that is not active is zero. With a `normal` n, voxels
+//!    count only in front of the surface: their centre is higher above the plane through P than half of what they span along n, 2ˡ·½·(|nₓ|+|n_y|+|n_z|), and
+//!    [`PLANE_MARGIN`]; S(l) is the sum divided by that of the weights that count, and zero where none does.
 //! 6. *Value.* What leaves a voxel against the cone's direction ω, (rgb, opacity) as f32 of its integers: isotropic as they are; anisotropic
 //!    Σ over the axes of ω²·face, the face being the one that ω comes in by: + where ω < 0, else −; harmonics
-//!    max(a₀ − ((aₓωₓ + a_yω_y) + a_zω_z), 0) per channel; in 8 bits the same of q·2ᵉ. Opacity is divided by [`OPAQUE`](crate::kernels::reduce_mips::OPAQUE), which is exact.
+//!    max(a₀ − ((aₓωₓ + a_yω_y) + a_zω_z), 0) per channel; in 8 bits the same of q times 2ᵉ. But for anisotropic ones, whose opacity
+//!    is that of a way through, opacity o (over [`OPAQUE`](crate::kernels::reduce_mips::OPAQUE)) is a mean over the voxel's space, of which 2ˡ layers are behind each other: with u = 1 − o (0 where o ≥ 1), squared l
+//!    times, the value is multiplied by (1 − u)/o where o > 0. Opacity is divided by `OPAQUE` in the end, which is exact.
 //! 7. *Blend.* With t = 1 at first: `rgb` += t·sample, t ·= 1 − min(opacity, 1). In the end `rgb` · `unit`, and t.
 //!
+//! *Why in front.* A surface's own voxels, and those of coarser levels that they are in, are beside every cone that leaves it: it would
+//! light and shadow itself on every level, by a third of its light in a room. A flat open floor sees nothing of itself.
+//! *Why layers.* A wall one voxel thick fills 2⁻ˡ of a voxel of level l, and is all that light through it meets. Taken as an opacity, the mean
+//! would let light through on every level but the first: a room shows a tenth of its light.
 //! *Why m − 1.* The weight of the coarser level is linear in the width, as filters are, and takes no logarithm.
 //! *Edge cases.* No cones, no voxels: nothing, open cones. A cone that begins outside of the grid is open. `sine` 0 is a ray march with a sphere of one
 //! voxel; from [`MAX_SINE`] on (140°) cones are that wide. A direction that is no unit vector, or has a zero in it, is as good as any: nothing is divided by
@@ -51,6 +59,8 @@ pub const ACCURACY: Accuracy = Accuracy::Interval {
 pub const MAX_SINE: f32 = 0.9375;
 /// Most samples of a cone: a ray through the diagonal of the largest grid takes 887.
 pub const MAX_STEPS: u32 = 1024;
+/// What a voxel must be above a plane beyond its own span, voxels: vertices are moved by 2⁻⁶ at most in a grid of 512, and f32 by less.
+pub const PLANE_MARGIN: f32 = 0.0625;
 /// What is left of a cone that is done with, 2⁻⁸: less than a step of 8 bits.
 pub const LEAST_TRANSMITTANCE: f32 = 0.003_906_25;
 
@@ -69,6 +79,10 @@ pub struct Cone {
     pub direction: [f32; 3],
     /// Distance to the first sample's centre.
     pub start: f32,
+    /// Unit normal of the surface that the apex is on, or 0 0 0 where it is on none.
+    pub normal: [f32; 3],
+    /// Unused, 0.
+    pub padding: u32,
 }
 
 /// What comes through a cone.

@@ -2,7 +2,7 @@
 
 use crate::kernels::reduce_mips::{ANISOTROPIC, HARMONICS, HARMONICS_8, ISOTROPIC, OPAQUE};
 use crate::kernels::trace_cones::{
-    Cone, ConeLight, LEAST_TRANSMITTANCE, MAX_SINE, MAX_STEPS, SIXTY_DEGREES, TraceConesBlock,
+    Cone, ConeLight, LEAST_TRANSMITTANCE, MAX_SINE, MAX_STEPS, PLANE_MARGIN, SIXTY_DEGREES, TraceConesBlock,
 };
 use crate::math::morton::morton_code;
 use glam::{Vec3, Vec4};
@@ -112,11 +112,29 @@ fn value(view: &VoxelView<'_>, number: u32, direction: Vec3) -> Vec4 {
     Vec4::new(channel(0), channel(1), channel(2), (head & 0xff_ffff) as f32)
 }
 
+/// A value whose opacity is a mean over space, as that of a voxel of level `level`: 2ˡ such layers, one behind the other.
+#[inline(always)]
+fn deepened(value: Vec4, level: u32) -> Vec4 {
+    let mean = value.w * (1.0 / OPAQUE as f32);
+    if !(mean > 0.0) {
+        return value;
+    }
+    let mut open = if mean < 1.0 { 1.0 - mean } else { 0.0 };
+    for _ in 0..level {
+        open *= open;
+    }
+    value * ((1.0 - open) / mean)
+}
+
 /// A voxel's value, or zeroes.
 #[inline(always)]
 fn value_at(view: &VoxelView<'_>, level: u32, voxel: [u32; 3], direction: Vec3) -> Vec4 {
     let number = value_of(view, level, voxel);
-    if number == NONE { Vec4::ZERO } else { value(view, number, direction) }
+    if number == NONE {
+        return Vec4::ZERO;
+    }
+    let found = value(view, number, direction);
+    if view.params.storage == ANISOTROPIC { found } else { deepened(found, level) }
 }
 
 /// 2⁻ˡ.
@@ -132,42 +150,67 @@ fn inside(i: i32, count: u32) -> u32 {
     if low < count { low } else { count - 1 }
 }
 
+/// What is in front of a cone's surface.
+#[derive(Debug, Clone, Copy)]
+struct HalfSpace {
+    /// 0 0 0 for all of space.
+    normal: Vec3,
+    /// normal·p of the points p of the surface, in voxels.
+    offset: f32,
+    /// Half of what a voxel of width 1 spans along the normal.
+    span: f32,
+}
+
+/// Whether a voxel of a level is in front of the surface's plane as a whole.
+#[inline(always)]
+fn is_in_front(space: &HalfSpace, voxel: [u32; 3], width: f32) -> bool {
+    let [x, y, z] = voxel.map(|i| (i as f32 + 0.5) * width);
+    let n = space.normal;
+    let height = ((n.x * x + n.y * y) + n.z * z) - space.offset;
+    height > space.span * width + PLANE_MARGIN || n == Vec3::ZERO
+}
+
 /// The filtered value of a level at `p`, in voxels of level 0.
 #[inline(always)]
-fn filtered(view: &VoxelView<'_>, level: u32, p: Vec3, direction: Vec3) -> Vec4 {
+fn filtered(view: &VoxelView<'_>, space: &HalfSpace, level: u32, p: Vec3, direction: Vec3) -> Vec4 {
     let q = p * scale_of(level) - Vec3::splat(0.5);
     let floor = Vec3::new(q.x.floor(), q.y.floor(), q.z.floor());
     let g = q - floor;
     let first = [floor.x as i32, floor.y as i32, floor.z as i32];
     let dims = view.dims.map(|n| (n + (1 << level) - 1) >> level);
-    let mut sum = Vec4::ZERO;
+    let width = f32::from_bits((127 + level) << 23);
+    let (mut sum, mut weight) = (Vec4::ZERO, 0.0);
     for corner in 0..8_u32 {
         let bit = [corner & 1, corner >> 1 & 1, corner >> 2];
         let voxel = [0, 1, 2].map(|axis| inside(first[axis] + bit[axis] as i32, dims[axis]));
         let x = if bit[0] == 1 { g.x } else { 1.0 - g.x };
         let y = if bit[1] == 1 { g.y } else { 1.0 - g.y };
         let z = if bit[2] == 1 { g.z } else { 1.0 - g.z };
-        sum += value_at(view, level, voxel, direction) * ((x * y) * z);
+        if is_in_front(space, voxel, width) {
+            let share = (x * y) * z;
+            sum += value_at(view, level, voxel, direction) * share;
+            weight += share;
+        }
     }
-    sum
+    if weight > 0.0 { sum * (1.0 / weight) } else { Vec4::ZERO }
 }
 
 /// The value of a sphere of diameter `width` ≥ 1 at `p`.
 #[inline(always)]
-fn sample(view: &VoxelView<'_>, p: Vec3, width: f32, direction: Vec3) -> Vec4 {
+fn sample(view: &VoxelView<'_>, space: &HalfSpace, p: Vec3, width: f32, direction: Vec3) -> Vec4 {
     let bits = width.to_bits();
     let level = (bits >> 23).wrapping_sub(127);
     let last = view.level_count - 1;
     if level >= last {
-        return filtered(view, last, p, direction);
+        return filtered(view, space, last, p, direction);
     }
     // m: the significand alone.
     let f = f32::from_bits((bits & 0x7f_ffff) | 0x3f80_0000) - 1.0;
-    let fine = filtered(view, level, p, direction);
+    let fine = filtered(view, space, level, p, direction);
     if !(f > 0.0) {
         return fine;
     }
-    fine * (1.0 - f) + filtered(view, level + 1, p, direction) * f
+    fine * (1.0 - f) + filtered(view, space, level + 1, p, direction) * f
 }
 
 /// Whether `p` is in the grid.
@@ -192,6 +235,12 @@ pub fn trace_cone(view: &VoxelView<'_>, cone: &Cone) -> ConeLight {
     let sixty = params.flags & SIXTY_DEGREES != 0;
     let apex = (Vec3::from(cone.origin) - Vec3::from(frame.corner)) * frame.voxels_per_unit;
     let direction = Vec3::from(cone.direction);
+    let normal = Vec3::from(cone.normal);
+    let space = HalfSpace {
+        normal,
+        offset: (normal.x * apex.x + normal.y * apex.y) + normal.z * apex.z,
+        span: 0.5 * ((normal.x.abs() + normal.y.abs()) + normal.z.abs()),
+    };
     let reach = params.reach * frame.voxels_per_unit;
     let s = if cone.sine > 0.0 { if cone.sine < MAX_SINE { cone.sine } else { MAX_SINE } } else { 0.0 };
     let mut d = cone.start * frame.voxels_per_unit;
@@ -213,7 +262,7 @@ pub fn trace_cone(view: &VoxelView<'_>, cone: &Cone) -> ConeLight {
         } else {
             0.5
         };
-        let found = sample(view, p, r + r, direction);
+        let found = sample(view, &space, p, r + r, direction);
         let opacity = found.w * (1.0 / OPAQUE as f32);
         rgb += Vec3::new(found.x, found.y, found.z) * t;
         t *= 1.0 - if opacity < 1.0 { opacity } else { 1.0 };

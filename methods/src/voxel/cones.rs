@@ -10,8 +10,10 @@ use twinlight_core::math::trig::sin_cos_turns;
 use twinlight_core::math::vector::{basis, normalized, to_world};
 use twinlight_core::transport::PI;
 
-/// How far above its surface a cone's apex is, voxels: the surface's own voxels fill up to one above it, and their filter's support one more.
-const LIFT: f32 = 1.5;
+/// How far above its surface a cone's apex is, voxels: where it is curved, its neighbours' voxels rise above its plane.
+const LIFT: f32 = 1.0;
+/// Where cones begin, voxels: the first sample is as wide.
+const START: f32 = 1.0;
 
 /// A cone of a hemisphere around +z.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,7 +82,9 @@ impl Bundle {
             origin,
             sine: lobe.sine,
             direction: to_world(t, b, normal, lobe.direction).to_array(),
-            start: 0.5 * voxel,
+            start: START * voxel,
+            normal: normal.to_array(),
+            padding: 0,
         };
         self.cones.extend(self.lobes.iter().map(cone));
     }

@@ -135,7 +135,17 @@ fn reflected(texel: &GBufferTexel, material: &MaterialRecord, eye: Vec3, voxel: 
     // Along a surface the way out of its own voxels is longer.
     let start = voxel / normal.dot(direction).max(0.25);
     let origin = (position + normal * voxel).to_array();
-    (Cone { origin, sine: lobe_sine(alpha), direction: direction.to_array(), start }, cosine)
+    (
+        Cone {
+            origin,
+            sine: lobe_sine(alpha),
+            direction: direction.to_array(),
+            start,
+            normal: normal.to_array(),
+            padding: 0,
+        },
+        cosine,
+    )
 }
 
 /// sin(2√2·atan α) for half-angles up to 90°, then 1: α is at most 1, so that atan α = α·(1 − α²/3 + …) is taken by Padé's α/(1 + 0.28α²), to
