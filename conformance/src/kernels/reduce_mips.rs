@@ -35,7 +35,7 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
 type Checked<T> = Result<T, Failure>;
 
 /// Every storage by its name.
-pub(crate) const STORAGES: [(u32, &str); 6] = [
+const STORAGES: [(u32, &str); 6] = [
     (ISOTROPIC, "isotropic"),
     (ANISOTROPIC, "anisotropic"),
     (HARMONICS, "harmonics"),
@@ -104,6 +104,23 @@ fn agrees<B: Backend>(cx: &Context<'_, B>, field: &Field) -> Check {
         resident.inputs_are_kept(cx)
     };
     check().map_err(|f: Failure| f.within(&format!("{field:?}")))
+}
+
+/// Ranks, codes and the values of every storage that a backend makes of a field's voxels, by name.
+pub(crate) fn all_of<B: Backend>(
+    cx: &Context<'_, B>,
+    field: &Field,
+) -> Checked<Vec<(&'static str, Vec<u32>)>> {
+    let resident = Resident::new(cx, field)?;
+    let levels = cx.backend.voxel_levels(&resident.voxels)?;
+    let found = downloaded(cx, &levels)?;
+    let mut all = vec![("ranks", found.ranks), ("active", found.active)];
+    for (storage, name) in STORAGES {
+        let params = ReduceMipsParams { storage };
+        let values = cx.backend.reduce_mips(&levels, &resident.leaves, &params)?;
+        all.push((name, cx.backend.download(&values)?));
+    }
+    Ok(all)
 }
 
 fn uploaded_voxels<B: Backend>(cx: &Context<'_, B>, field: &Field, want: &Levels) -> Checked<Voxels<B>> {
