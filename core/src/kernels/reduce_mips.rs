@@ -42,8 +42,8 @@
 //! 0 to [`OPAQUE`].
 //! *How 32 bits suffice.* A leaf's opacity o is at most [`OPAQUE`], its r, g and b are at most [`MAX_RADIANCE`]·o/[`OPAQUE`]: so is every column
 //! f + (1 − f's opacity)·b, but for roundings, and sums of 8 are below 2²⁶. Products with opacities and m(k, ·) are taken by splitting a
-//! factor at 16 and 14 bits. Harmonics grow by at most 1 + 3·κ per level, less than 36 times up to the last of ten levels: below 2²⁸, and sums
-//! of 8 of the level below it are below 2³¹.
+//! factor at 16 and 14 bits. Harmonics grow by at most 1 + 3·κ per level, 36 times up to the last of ten: below 2²⁸, and the sums
+//! that they are eighths of below 2³¹.
 //! *Edge cases.* Nothing active: no values, levels of zeroes. One voxel: one level.
 //! *Errors.* Leaves beyond their limits: some values. Buffers that are no result of `voxelize`: some levels, or an error; nothing outside
 //! the buffers is read.
