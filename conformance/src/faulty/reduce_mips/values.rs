@@ -1,7 +1,7 @@
 //! Values with a bug, by code.
 
 use crate::faults::Fault;
-use crate::oracle::reduce_mips::{NEAR_LESS_FAR, TWO_THIRDS, is_sound, packed, scaled};
+use crate::oracle::reduce_mips::{NEAR_LESS_FAR, TWO_THIRDS, packed, scaled};
 use std::collections::BTreeMap;
 use twinlight_core::kernels::reduce_mips::{
     ANISOTROPIC, HARMONICS, HARMONICS_8, ISOTROPIC, OPAQUE, SUMS, VoxelLight,
@@ -42,7 +42,7 @@ impl Values<'_> {
     fn seen(&self, octant: u32) -> u32 {
         match self.fault {
             Fault::MipsSwapsHalves => octant ^ 1,
-            Fault::MipsSwapsAxes => octant & 1 | (octant & 2) << 1 | (octant & 4) >> 1,
+            Fault::MipsSwapsAxes => (octant & 1) | ((octant & 2) << 1) | ((octant & 4) >> 1),
             _ => octant,
         }
     }
@@ -55,7 +55,7 @@ impl Values<'_> {
 
     fn leaf(&self, light: &VoxelLight) -> Value {
         let mut light = *light;
-        if self.fault == Fault::MipsWeighsLeaves && is_sound(&light) {
+        if self.fault == Fault::MipsWeighsLeaves {
             light.rgb = light.rgb.map(|c| ((u64::from(c) * u64::from(light.opacity)) >> 16) as u32);
         }
         let [r, g, b] = light.rgb.map(i128::from);
@@ -149,7 +149,7 @@ impl Values<'_> {
     fn scaled(&self, k: i128, x: i128) -> i128 {
         match self.fault {
             Fault::MipsFloors => (k * x) >> 14,
-            Fault::MipsScalesRounded => (k * x.abs() + (1 << 13) >> 14) * x.signum(),
+            Fault::MipsScalesRounded => ((k * x.abs() + (1 << 13)) >> 14) * x.signum(),
             _ => scaled(k, x),
         }
     }
@@ -211,7 +211,11 @@ impl Values<'_> {
             }
         };
         let opacity = value[0] as u32;
-        let head = if self.fault == Fault::MipsForgetsExponent { opacity } else { opacity + (other << 24) };
+        let head = if self.fault == Fault::MipsForgetsExponent {
+            opacity
+        } else {
+            opacity.wrapping_add(other << 24)
+        };
         [head, word(0), word(1), word(2)]
     }
 }
