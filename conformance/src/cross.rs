@@ -5,6 +5,7 @@ use crate::compare::{Shape, exact};
 use crate::expectations::Verdict;
 use crate::kernels::filter_indirect::{filtered_over, inputs, within_intervals};
 use crate::kernels::query_lhb::scattered;
+use crate::kernels::reduce_mips::{all_of, inputs::surfaces};
 use crate::kernels::trace_paths::{params, traced};
 use crate::kernels::walk_lhb::{Prepared, walked};
 use crate::scenes::{Rays, compiled};
@@ -19,6 +20,7 @@ use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsP
 use twinlight_core::kernels::walk_lhb::{SHADOW_LOOKUPS, SHADOW_LOOKUPS_FIRST};
 use twinlight_core::lattice::{Lattice, LatticeMesh, View};
 use twinlight_core::scene::{Camera, CompiledScene, Scene};
+use twinlight_fixtures::random::Random;
 use twinlight_fixtures::scenes::builtin;
 use twinlight_methods::post::image::Image;
 use twinlight_methods::post::metrics::ztest::{Estimate, ZTest, ZTestSettings};
@@ -38,6 +40,7 @@ pub fn checks<A: Backend, B: Backend>() -> Vec<(&'static str, CrossCheck<A, B>)>
         ("trace_paths", films),
         ("walk_lhb", walks),
         ("filter_indirect", filters),
+        ("reduce_mips", mips),
     ]
 }
 
@@ -299,6 +302,20 @@ fn filters<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
         }
         Ok(())
     })
+}
+
+/// Levels and values of every storage, over shells of 64³ and 200³ voxels: integers, so the same bits in every mode.
+fn mips<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    let options = Options::default();
+    for (side, count) in [(64, 4_000), (200, 20_000)] {
+        let field = surfaces(&mut Random::new(u64::from(side)), side, count);
+        let cx = context(b, &options, "cross.reduce_mips");
+        let (want, got) = (all_of(&context(a, &options, "cross.reduce_mips"), &field)?, all_of(&cx, &field)?);
+        for ((name, want), (_, got)) in want.iter().zip(&got) {
+            exact(&cx, name, got, want, Shape::Line)?;
+        }
+    }
+    Ok(())
 }
 
 /// Means and variances of both films, compared.

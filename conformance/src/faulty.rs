@@ -5,6 +5,7 @@ mod merge_lhb;
 mod pack_lhb;
 mod query_lhb;
 mod rasterize_lhb;
+mod reduce_mips;
 mod scan;
 mod shade_primary;
 mod sort;
@@ -218,7 +219,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
     }
 
     fn voxel_levels(&self, voxels: &Voxels<Self>) -> Result<VoxelLevels<Self>> {
-        self.inner.voxel_levels(voxels)
+        reduce_mips::voxel_levels(self.inner, self.fault, voxels)
     }
 
     fn reduce_mips(
@@ -227,7 +228,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         leaves: &B::Buffer<VoxelLight>,
         params: &ReduceMipsParams,
     ) -> Result<B::Buffer<u32>> {
-        self.inner.reduce_mips(levels, leaves, params)
+        reduce_mips::reduce_mips(self.inner, self.fault, levels, leaves, params)
     }
 
     fn light_voxels(

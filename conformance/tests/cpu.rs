@@ -106,9 +106,18 @@ fn d10_host_flushes_subnormals() -> Check {
     let flushing = pool.install(|| {
         let options = Options {
             effort: Effort::Quick,
-            kernels: ["scan", "sort", "rasterize_lhb", "merge_lhb", "pack_lhb", "query_lhb", "trace"]
-                .map(String::from)
-                .into(),
+            kernels: [
+                "scan",
+                "sort",
+                "rasterize_lhb",
+                "merge_lhb",
+                "pack_lhb",
+                "query_lhb",
+                "trace",
+                "reduce_mips",
+            ]
+            .map(String::from)
+            .into(),
             ..Options::default()
         };
         let report = run(&CpuBackend::new(), &options, "");

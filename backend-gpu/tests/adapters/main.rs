@@ -9,6 +9,7 @@ mod frames;
 mod lhb;
 mod lookups;
 mod merges;
+mod mips;
 mod packs;
 mod scan;
 mod sort;
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
         lhb::CHECKS,
         lookups::CHECKS,
         merges::CHECKS,
+        mips::CHECKS,
         packs::CHECKS,
         scan::CHECKS,
         sort::CHECKS,

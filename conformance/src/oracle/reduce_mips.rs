@@ -8,7 +8,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use twinlight_core::kernels::reduce_mips::{
-    ANISOTROPIC, HARMONICS, HARMONICS_8, ISOTROPIC, MAX_RADIANCE, OPAQUE, RANGES, SUMS, VoxelLight,
+    ANISOTROPIC, HARMONICS, HARMONICS_8, ISOTROPIC, OPAQUE, RANGES, SUMS, VoxelLight,
 };
 
 mod harmonics;
@@ -158,13 +158,6 @@ fn through_face(children: &Children<'_>, face: usize) -> Value {
         word(front, w) + (passes * word(back, w)).div_euclid(i128::from(OPAQUE))
     };
     (0..4).map(|w| ((0..4).map(|other| column(other, w)).sum::<i128>() + 2).div_euclid(4)).collect()
-}
-
-/// Whether a leaf is within its limits.
-pub fn is_sound(light: &VoxelLight) -> bool {
-    let most = u64::from(MAX_RADIANCE) * u64::from(light.opacity);
-    let within = |c: &u32| u64::from(*c) * u64::from(OPAQUE) <= most;
-    light.opacity <= OPAQUE && light.rgb.iter().all(within)
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@
 //! * [`HARMONICS_8`], 4 words: the harmonics of that voxel, which are reduced as above, in 8 bits each. The first word is opacity + (e << 24); then for each
 //!   channel the bytes q₀ qₓ q_y q_z, lowest first. e is the least number from 0 on for which all of r(a₀) ≤ 255, r(a₀) ≥ 0 and |r(aᵢ)| ≤ 127
 //!   hold, r(a) = sign(a)·((|a| + (2ᵉ >> 1)) >> e); a₀ < 0 counts as 0. q₀ is r(a₀), the others are r(aᵢ) in two's complement.
-//!   *Its error.* At most half of 2ᵉ per coefficient, that is ½/127 of the greatest one where e is not 0.
+//!   *Its error.* Where a₀ ≥ 0, at most half of 2ᵉ per coefficient, that is 1/127 of the greatest one where e is not 0.
 //! * [`SUMS`], 2 words: low and high word of Σ (r + g + b) over the leaves below, premultiplied; modulo 2⁶⁴.
 //! * [`RANGES`], 2 words: the least and the greatest r + g + b of the leaves below, premultiplied.
 //!
@@ -40,9 +40,10 @@
 //! *Promises.* Where all 8 children are the same and opaque, isotropic and anisotropic parents are what they are; constant harmonics (aᵢ = 0) stay
 //! constant; all to the bit, on every level. Σ value·volume of isotropic values is kept up to the rounding, ½ per word and voxel. Opacity stays in
 //! 0 to [`OPAQUE`].
-//! *How 32 bits suffice.* A leaf's opacity is at most [`OPAQUE`], its r, g and b are at most [`MAX_RADIANCE`] times it: so is every column
+//! *How 32 bits suffice.* A leaf's opacity o is at most [`OPAQUE`], its r, g and b are at most [`MAX_RADIANCE`]·o/[`OPAQUE`]: so is every column
 //! f + (1 − f's opacity)·b, but for roundings, and sums of 8 are below 2²⁶. Products with opacities and m(k, ·) are taken by splitting a
-//! factor at 16 and 14 bits. Harmonics grow by at most 1 + 3·κ per level, 2⁶ in ten levels: below 2²⁸.
+//! factor at 16 and 14 bits. Harmonics grow by at most 1 + 3·κ per level, 36 times up to the last of ten: below 2²⁸, and the sums
+//! that they are eighths of below 2³¹.
 //! *Edge cases.* Nothing active: no values, levels of zeroes. One voxel: one level.
 //! *Errors.* Leaves beyond their limits: some values. Buffers that are no result of `voxelize`: some levels, or an error; nothing outside
 //! the buffers is read.
@@ -100,7 +101,7 @@ pub struct ReduceMipsParams {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable)]
 pub struct VoxelLight {
-    /// Premultiplied radiance, at most [`MAX_RADIANCE`] times the opacity.
+    /// Premultiplied radiance, at most [`MAX_RADIANCE`]·opacity/[`OPAQUE`].
     pub rgb: [u32; 3],
     /// At most [`OPAQUE`].
     pub opacity: u32,

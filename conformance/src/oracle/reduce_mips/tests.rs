@@ -151,7 +151,7 @@ fn harmonics_stay_close_to_six_faces_in_f64() {
         leaves.iter().map(|(&code, leaf)| (code, [f64::from(leaf.rgb[1]), 0.0, 0.0, 0.0])).collect();
     let (mut at, mut allowed) = (leaves.len(), 0.0);
     // No coefficient is greater than 2²² · (1 + 3κ)ˡ.
-    let (growth, mut greatest) = (1.0 + 3.0 * (near - far) / (4.0 * PI), f64::from(MAX_RADIANCE));
+    let (growth, mut greatest) = (1.0 + 3.0 * (near - far) / (4.0 * PI), f64::from(contract::MAX_RADIANCE));
     for codes in &levels[1..] {
         let mut level: BTreeMap<u32, [f64; 4]> = BTreeMap::new();
         for (code, a) in &below {
