@@ -105,6 +105,8 @@ fn exact_kernels_have_no_floats() {
         ("merge_lhb", contracts::merge_lhb::ACCURACY),
         ("pack_lhb", contracts::pack_lhb::ACCURACY),
         ("query_lhb", contracts::query_lhb::ACCURACY),
+        ("voxelize", contracts::voxelize::ACCURACY),
+        ("sum_voxels", contracts::sum_voxels::ACCURACY),
     ];
     let has_floats = |source: &KernelSource| {
         let module = source.check().expect("checked above").module;

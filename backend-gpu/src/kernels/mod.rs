@@ -13,8 +13,10 @@ pub mod scan;
 pub mod shade_primary;
 pub mod sort;
 mod status;
+pub mod sum_voxels;
 pub mod trace;
 pub mod trace_paths;
+pub mod voxelize;
 pub mod walk_lhb;
 
 use crate::source::KernelSource;
@@ -32,4 +34,6 @@ pub const ALL: &[&KernelSource] = &[
     &trace_paths::SOURCE,
     &walk_lhb::SOURCE,
     &filter_indirect::SOURCE,
+    &voxelize::SOURCE,
+    &sum_voxels::SOURCE,
 ];

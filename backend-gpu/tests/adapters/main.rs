@@ -14,6 +14,7 @@ mod scan;
 mod sort;
 mod strict;
 mod transport;
+mod voxels;
 mod walks;
 mod wide;
 
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
         sort::CHECKS,
         strict::CHECKS,
         transport::CHECKS,
+        voxels::CHECKS,
         walks::CHECKS,
         wide::CHECKS,
     ]
