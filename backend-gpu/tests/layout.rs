@@ -344,6 +344,7 @@ fn twins() -> Vec<Twins> {
                 small_count,
                 word_count,
                 level,
+                words_per_rank,
                 code_begin,
                 code_end,
                 padding,

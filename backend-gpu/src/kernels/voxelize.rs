@@ -36,6 +36,10 @@ pub const SOURCE: KernelSource = KernelSource {
 /// Triangles, items or words per workgroup; twin of the WGSL constant.
 pub const WORKGROUP_SIZE: u32 = 256;
 
+/// Words per rank of the next level's list. Its ranks are no output, and a scan of one per word would take as long as all else
+/// in a grid of 512³.
+const WORDS_PER_PARENT_RANK: u32 = 16;
+
 /// Twin of the WGSL struct.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -50,12 +54,14 @@ pub struct VoxelizeBlock {
     pub word_count: u32,
     /// 0 lists voxels, 1 lists those of the next level.
     pub level: u32,
+    /// Words of the mask per rank.
+    pub words_per_rank: u32,
     /// First code of the dispatch.
     pub code_begin: u32,
     /// The code after the last.
     pub code_end: u32,
     /// Unused, 0.
-    pub padding: [u32; 2],
+    pub padding: u32,
 }
 
 /// Runs the kernel; see the contract.
@@ -76,8 +82,8 @@ pub fn run(
     let mask = device.zeroed::<u32>(words)?;
     call.mark(Class::small(grid, &small, params.cutoff), &mask)?;
     call.mark(Class::large(grid, &large), &mask)?;
-    let (ranks, active) = call.list_codes(&mask, 0)?;
-    let (_, parents) = call.list_codes(&mask, 1)?;
+    let (ranks, active) = call.list_codes(&mask, 0, 1)?;
+    let (_, parents) = call.list_codes(&mask, 1, WORDS_PER_PARENT_RANK)?;
     Ok(VoxelBuffers { grid: *grid, small, large, mask, ranks, active, parents })
 }
 
@@ -136,14 +142,20 @@ impl Call<'_> {
         })
     }
 
-    /// The ranks of the mask's words at `level`, and the codes there.
-    fn list_codes(&self, mask: &GpuBuffer<u32>, level: u32) -> Result<(GpuBuffer<u32>, GpuBuffer<u32>)> {
+    /// The ranks of every `words_per_rank` words of the mask at `level`, and the codes there.
+    fn list_codes(
+        &self,
+        mask: &GpuBuffer<u32>,
+        level: u32,
+        words_per_rank: u32,
+    ) -> Result<(GpuBuffer<u32>, GpuBuffer<u32>)> {
         let device = self.device;
-        let block = VoxelizeBlock { level, ..self.block };
-        let counts = device.zeroed::<u32>(mask.len() + 1)?;
-        let mut ranks = device.zeroed::<u32>(mask.len() + 1)?;
+        let block = VoxelizeBlock { level, words_per_rank, ..self.block };
+        let count = block.word_count.div_ceil(words_per_rank);
+        let counts = device.zeroed::<u32>(count as usize + 1)?;
+        let mut ranks = device.zeroed::<u32>(counts.len())?;
         let buffers = [("mask", mask.binding()), ("counts", counts.binding())];
-        self.dispatch("count_codes", &block, &buffers, block.word_count)?;
+        self.dispatch("count_codes", &block, &buffers, count)?;
         let total = scan::run(device, &counts, &mut ranks)? as usize;
         let codes = device.zeroed::<u32>(total)?;
         for part in chunks(total, device.elements_per_binding(size_of::<u32>())) {
@@ -151,7 +163,7 @@ impl Call<'_> {
             let block = VoxelizeBlock { code_begin, code_end, ..block };
             let buffers =
                 [("mask", mask.binding()), ("ranks", ranks.binding()), ("codes", codes.binding_of(part))];
-            self.dispatch("list_codes", &block, &buffers, block.word_count)?;
+            self.dispatch("list_codes", &block, &buffers, count)?;
         }
         Ok((ranks, codes))
     }

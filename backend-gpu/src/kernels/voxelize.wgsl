@@ -16,10 +16,12 @@ struct VoxelizeBlock {
     word_count: u32,
     // 0 lists voxels, 1 lists those of the next level.
     level: u32,
+    // Words of the mask per rank.
+    words_per_rank: u32,
     // Codes of the dispatch.
     code_begin: u32,
     code_end: u32,
-    padding: vec2<u32>,
+    padding: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: VoxelizeBlock;
@@ -102,7 +104,7 @@ fn size_items(
 }
 
 // [2] mark small: an item is all cells of a triangle, or a part if they are many
-// [3] mark large: an item is a cell
+// [3] mark large: an item is a few cells
 @compute @workgroup_size(256)
 fn mark_items(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -149,36 +151,45 @@ fn bits_of(word: u32) -> u32 {
     return (parents | (parents >> 7u) | (parents >> 14u) | (parents >> 21u)) & 15u;
 }
 
-// [4] rank: the bits of every word, and kernel scan, from the host; one more word stays 0, so that the scan ends with the total
+// [4] rank: the bits of some words, and kernel scan, from the host; one more stays 0, so that the scan ends with the total
 @compute @workgroup_size(256)
 fn count_codes(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let word = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
-    if word < params.word_count {
-        counts[word] = countOneBits(bits_of(word));
+    let index = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
+    let begin = index * params.words_per_rank;
+    if begin >= params.word_count {
+        return;
     }
+    var count = 0u;
+    for (var word = begin; word < min(begin + params.words_per_rank, params.word_count); word++) {
+        count += countOneBits(bits_of(word));
+    }
+    counts[index] = count;
 }
 
-// [5] list: the codes of a word from its rank on
+// [5] list: the codes of those words from their rank on
 @compute @workgroup_size(256)
 fn list_codes(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let word = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
-    if word >= params.word_count {
+    let index = invocation_index(workgroup, workgroups, lane, WORKGROUP_SIZE);
+    let begin = index * params.words_per_rank;
+    if begin >= params.word_count {
         return;
     }
-    let first = word << select(5u, 2u, params.level == 1u);
-    var rank = ranks[word];
-    for (var bits = bits_of(word); bits != 0u; bits &= bits - 1u) {
-        if rank >= params.code_begin && rank < params.code_end {
-            codes[rank - params.code_begin] = first | countTrailingZeros(bits);
+    var rank = ranks[index];
+    for (var word = begin; word < min(begin + params.words_per_rank, params.word_count); word++) {
+        let first = word << select(5u, 2u, params.level == 1u);
+        for (var bits = bits_of(word); bits != 0u; bits &= bits - 1u) {
+            if rank >= params.code_begin && rank < params.code_end {
+                codes[rank - params.code_begin] = first | countTrailingZeros(bits);
+            }
+            rank += 1u;
         }
-        rank += 1u;
     }
 }

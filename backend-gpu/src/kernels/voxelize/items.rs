@@ -13,14 +13,14 @@ use twinlight_core::lattice::VoxelGrid;
 /// llvmpipe gives them.
 const SMALL_CELLS: u32 = 64;
 
-/// Cells of a large triangle's item.
-const LARGE_CELLS: u32 = 1;
+/// Cells of a large triangle's item: to find a triangle and set it up takes as long as a few cells.
+const LARGE_CELLS: u32 = 8;
 
 /// Triangles that are set up at once: 32 MiB.
 const MAX_LISTED: usize = 1 << 20;
 
 /// Cells per submission: one that takes seconds looks like a device that hangs.
-const MAX_CELLS: u32 = 1 << 24;
+const MAX_CELLS: u32 = 1 << 22;
 
 /// What the parameters of the kernels over items begin with; twin of the WGSL struct.
 #[repr(C)]
@@ -78,12 +78,16 @@ impl<'a> Class<'a> {
         Self { list, cells_per_item: LARGE_CELLS, most_cells: face(grid) }
     }
 
-    /// Triangles in a part of the list, whose items are counted in one word.
-    fn part(&self, device: &GpuDevice, most_items: u32) -> usize {
-        // Parts begin at multiples of 64: a face of 2¹⁸ cells leaves 16 thousand.
-        let countable = (u32::MAX / most_items.max(1)) as usize / 64 * 64;
-        countable.min(device.elements_per_binding(size_of::<ListedTriangle>())).min(MAX_LISTED)
+    /// Most items of a triangle.
+    fn most_items(&self) -> u32 {
+        self.most_cells.div_ceil(self.cells_per_item)
     }
+}
+
+/// How many triangles of at most `most_items` each have items that are counted in one word; in multiples of 64, from which on lists
+/// can be bound.
+fn countable(most_items: u32) -> usize {
+    (u32::MAX / most_items.max(1)) as usize / 64 * 64
 }
 
 /// Cells of the grid's greatest face.
@@ -104,9 +108,9 @@ pub(crate) fn for_each_run(
     class: Class<'_>,
     mut work: impl FnMut(VoxelItems, [(&'static str, BufferRef<'_>); 2]) -> Result<()>,
 ) -> Result<()> {
-    let Class { list, cells_per_item, most_cells } = class;
-    let most_items = most_cells.div_ceil(cells_per_item);
-    for part in chunks(list.len(), class.part(device, most_items)) {
+    let (Class { list, cells_per_item, .. }, most_items) = (class, class.most_items());
+    let bindable = device.elements_per_binding(size_of::<ListedTriangle>());
+    for part in chunks(list.len(), countable(most_items).min(bindable).min(MAX_LISTED)) {
         let list_count = part.len() as u32;
         let call = VoxelItems { list_count, cells_per_item, most_items, ..call };
         let (listed, offsets, total) = sized(device, mesh, call, list.binding_of(part))?;
@@ -145,4 +149,19 @@ fn sized(
     recorder.run()?;
     let total = scan::run(device, &sizes, &mut offsets)?;
     Ok((listed, offsets, total))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn items_of_a_part_are_counted_in_one_word() {
+        let face = 1_u32 << 18;
+        for most_items in [0, 1, 2, 63, 4096, face / LARGE_CELLS, face] {
+            let count = countable(most_items) as u64;
+            assert!(count > 0 && count.is_multiple_of(64), "{most_items}: {count}");
+            assert!(count * u64::from(most_items) <= u64::from(u32::MAX), "{most_items}: {count}");
+        }
+    }
 }
