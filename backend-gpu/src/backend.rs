@@ -4,7 +4,7 @@ use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
 use crate::kernels::{
     filter_indirect, merge_lhb, pack_lhb, query_lhb, rasterize_lhb, reduce_mips, scan, shade_primary, sort,
-    trace, trace_paths, walk_lhb,
+    sum_voxels, trace, trace_paths, voxelize, walk_lhb,
 };
 use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
@@ -199,19 +199,19 @@ impl Backend for GpuBackend {
         filter_indirect::run(&self.device, gbuffer, diffuse, input, params, output)
     }
 
-    fn voxelize(&self, _: &GpuMesh, _: &VoxelGrid, _: &VoxelizeParams) -> Result<Voxels<Self>> {
-        Err(twinlight_core::Error::Internal("voxelize: not there yet".into()))
+    fn voxelize(&self, mesh: &GpuMesh, grid: &VoxelGrid, params: &VoxelizeParams) -> Result<Voxels<Self>> {
+        voxelize::run(&self.device, mesh, grid, params)
     }
 
     fn sum_voxels(
         &self,
-        _: &GpuMesh,
-        _: &Voxels<Self>,
-        _: &GpuBuffer<VoxelSurface>,
-        _: &GpuBuffer<u32>,
-        _: &VoxelizeParams,
+        mesh: &GpuMesh,
+        voxels: &Voxels<Self>,
+        surfaces: &GpuBuffer<VoxelSurface>,
+        texels: &GpuBuffer<u32>,
+        params: &VoxelizeParams,
     ) -> Result<GpuBuffer<VoxelSums>> {
-        Err(twinlight_core::Error::Internal("sum_voxels: not there yet".into()))
+        sum_voxels::run(&self.device, mesh, voxels, surfaces, texels, params)
     }
 
     fn voxel_levels(&self, voxels: &Voxels<Self>) -> Result<VoxelLevels<Self>> {

@@ -24,6 +24,8 @@ shared! {
     ENVIRONMENT = "environment";
     /// Twin of `math::fixed`.
     FIXED = "fixed";
+    /// Twin of `math::fragment`; wants `params.texel_count` and a global `texels: array<u32>`.
+    FRAGMENT = "fragment";
     /// Twin of `math::hash`.
     HASH = "hash";
     /// Twin of `transport::intersect`.
@@ -36,6 +38,8 @@ shared! {
     LIGHT = "light";
     /// What a lookup in layered hit buffers meets, and the bindings of them; wants `params.lhb`.
     LOOK_UP = "look_up";
+    /// Twin of `math::morton`.
+    MORTON = "morton";
     /// Twin of `math::octahedral`; wants a global `nearest_map: array<u32>`.
     OCTAHEDRAL = "octahedral";
     /// Twin of `transport::offset`.
@@ -58,6 +62,10 @@ shared! {
     TRIG = "trig";
     /// Twin of `math::vector`.
     VECTOR = "vector";
+    /// Twin of `lattice::voxel`; wants `shared/wide.wgsl` and `params.items`.
+    VOXEL = "voxel";
+    /// Triangles cut into items, and the bindings of them; wants `shared/voxel.wgsl` and `params.items`.
+    VOXEL_ITEMS = "voxel_items";
     /// 64-bit integers, which Rust has and WGSL hasn't.
     WIDE = "wide";
 }

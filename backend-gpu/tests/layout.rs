@@ -4,16 +4,17 @@
 //! is misspelt; one that is left out shows as a WGSL field that nothing answers to.
 
 use std::mem::{offset_of, size_of};
+use twinlight_backend_gpu::kernels::voxelize::items;
 use twinlight_backend_gpu::kernels::{
     self, filter_indirect, merge_lhb, pack_lhb, path, query_lhb, rasterize_lhb, reduce_mips, scan,
-    shade_primary, sort, trace, trace_paths, walk_lhb,
+    shade_primary, sort, sum_voxels, trace, trace_paths, voxelize, walk_lhb,
 };
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
     filter_indirect as filter_contract, merge_lhb as merge_contract, pack_lhb as pack_contract,
     query_lhb as query_contract, rasterize_lhb as lhb_contract, reduce_mips as mips_contract,
-    shade_primary as shade_contract, trace as trace_contract, trace_paths as paths_contract,
-    walk_lhb as walk_contract,
+    shade_primary as shade_contract, sum_voxels as sums_contract, trace as trace_contract,
+    trace_paths as paths_contract, voxelize as voxel_contract, walk_lhb as walk_contract,
 };
 use twinlight_core::transport::{intersect, lhb, light};
 use twinlight_core::{bvh, lattice, math, scene, transport};
@@ -365,7 +366,70 @@ fn twins() -> Vec<Twins> {
                 ("TWO_THIRDS", mips_contract::TWO_THIRDS.into()),
             ],
         },
+        Twins {
+            source: &voxelize::SOURCE,
+            structs: with_voxel_items(vec![layout!(voxelize::VoxelizeBlock {
+                items,
+                cutoff,
+                small_count,
+                word_count,
+                level,
+                words_per_rank,
+                code_begin,
+                code_end,
+                padding,
+            })]),
+            constants: with_voxel_constants(vec![("WORKGROUP_SIZE", voxelize::WORKGROUP_SIZE.into())]),
+        },
+        Twins {
+            source: &sum_voxels::SOURCE,
+            structs: with_voxel_items(vec![
+                layout!(sum_voxels::SumVoxelsBlock { items, texel_count, active_begin, active_end, padding }),
+                layout!(sums_contract::VoxelSurface {
+                    normals,
+                    texture,
+                    texcoords,
+                    texture_size,
+                    flags,
+                    tint,
+                    emission,
+                }),
+            ]),
+            constants: with_voxel_constants(vec![
+                ("WORKGROUP_SIZE", sum_voxels::WORKGROUP_SIZE.into()),
+                ("SUM_WORDS", words(size_of::<sums_contract::VoxelSums>()).into()),
+                ("COUNT", words(offset_of!(sums_contract::VoxelSums, count)).into()),
+                ("NORMAL", words(offset_of!(sums_contract::VoxelSums, normal)).into()),
+                ("EMISSION", words(offset_of!(sums_contract::VoxelSums, emission)).into()),
+                ("NONE", sums_contract::NONE.into()),
+                ("CLAMP", sums_contract::CLAMP.into()),
+            ]),
+        },
     ]
+}
+
+fn words(bytes: usize) -> u32 {
+    (bytes / size_of::<u32>()) as u32
+}
+
+/// The structs of `shared/voxel.wgsl` and `shared/voxel_items.wgsl`.
+fn with_voxel_items(mut structs: Vec<Layout>) -> Vec<Layout> {
+    structs.extend([
+        layout!(lattice::VoxelGrid { dims, scale, offset, subvoxel_bits }),
+        layout!(items::VoxelItems {
+            grid,
+            separation,
+            triangle_count,
+            list_count,
+            cells_per_item,
+            most_items,
+            item_begin,
+            item_end,
+            padding,
+        }),
+        layout!(items::ListedTriangle { corners, triangle, padding }),
+    ]);
+    structs
 }
 
 /// The structs of `shared/scene.wgsl`.
@@ -494,6 +558,17 @@ fn with_path_constants(mut constants: Constants) -> Constants {
         ("OUT_OF_RANGE", math::fixed::OUT_OF_RANGE[0].into()),
     ]);
     with_lights(constants)
+}
+
+/// The constants of `shared/voxel.wgsl`.
+fn with_voxel_constants(mut constants: Constants) -> Constants {
+    constants.extend([
+        ("CONSERVATIVE", voxel_contract::CONSERVATIVE.into()),
+        ("MARGIN", voxel_contract::MARGIN.into()),
+        ("SCALE_BITS", lattice::SCALE_BITS.into()),
+        ("WEIGHT_BITS", lattice::WEIGHT_BITS.into()),
+    ]);
+    constants
 }
 
 /// The constants of `shared/look_up.wgsl`.

@@ -106,6 +106,8 @@ fn exact_kernels_have_no_floats() {
         ("pack_lhb", contracts::pack_lhb::ACCURACY),
         ("query_lhb", contracts::query_lhb::ACCURACY),
         ("reduce_mips", contracts::reduce_mips::ACCURACY),
+        ("voxelize", contracts::voxelize::ACCURACY),
+        ("sum_voxels", contracts::sum_voxels::ACCURACY),
     ];
     let has_floats = |source: &KernelSource| {
         let module = source.check().expect("checked above").module;

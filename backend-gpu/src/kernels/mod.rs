@@ -14,8 +14,10 @@ pub mod scan;
 pub mod shade_primary;
 pub mod sort;
 mod status;
+pub mod sum_voxels;
 pub mod trace;
 pub mod trace_paths;
+pub mod voxelize;
 pub mod walk_lhb;
 
 use crate::source::KernelSource;
@@ -34,4 +36,6 @@ pub const ALL: &[&KernelSource] = &[
     &walk_lhb::SOURCE,
     &filter_indirect::SOURCE,
     &reduce_mips::SOURCE,
+    &voxelize::SOURCE,
+    &sum_voxels::SOURCE,
 ];

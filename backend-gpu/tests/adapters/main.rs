@@ -15,6 +15,7 @@ mod scan;
 mod sort;
 mod strict;
 mod transport;
+mod voxels;
 mod walks;
 mod wide;
 
@@ -55,6 +56,7 @@ fn main() -> ExitCode {
         sort::CHECKS,
         strict::CHECKS,
         transport::CHECKS,
+        voxels::CHECKS,
         walks::CHECKS,
         wide::CHECKS,
     ]
