@@ -9,15 +9,17 @@ pub mod rasterize_lhb;
 pub mod scan;
 pub mod shade_primary;
 pub mod sort;
+pub mod sum_voxels;
 pub mod trace;
 pub mod trace_paths;
+pub mod voxelize;
 pub mod walk_lhb;
 
 use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 11] = [
+pub const STEMS: [&str; 13] = [
     "scan",
     "sort",
     "rasterize_lhb",
@@ -29,6 +31,8 @@ pub const STEMS: [&str; 11] = [
     "trace_paths",
     "walk_lhb",
     "filter_indirect",
+    "voxelize",
+    "sum_voxels",
 ];
 
 /// Lists every kernel's trials.
@@ -44,6 +48,8 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     trace_paths::list(list);
     walk_lhb::list(list);
     filter_indirect::list(list);
+    voxelize::list(list);
+    sum_voxels::list(list);
 }
 
 /// Bit equality is promised where float results are those of IEEE 754 evaluated as written.

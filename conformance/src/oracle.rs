@@ -9,6 +9,8 @@ pub mod rasterize_lhb;
 pub mod scan;
 pub mod shade_primary;
 pub mod sort;
+pub mod sum_voxels;
 pub mod trace;
 pub mod trace_paths;
+pub mod voxelize;
 pub mod walk_lhb;
