@@ -106,9 +106,19 @@ fn d10_host_flushes_subnormals() -> Check {
     let flushing = pool.install(|| {
         let options = Options {
             effort: Effort::Quick,
-            kernels: ["scan", "sort", "rasterize_lhb", "merge_lhb", "pack_lhb", "query_lhb", "trace"]
-                .map(String::from)
-                .into(),
+            kernels: [
+                "scan",
+                "sort",
+                "rasterize_lhb",
+                "merge_lhb",
+                "pack_lhb",
+                "query_lhb",
+                "trace",
+                "voxelize",
+                "sum_voxels",
+            ]
+            .map(String::from)
+            .into(),
             ..Options::default()
         };
         let report = run(&CpuBackend::new(), &options, "");

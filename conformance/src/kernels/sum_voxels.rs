@@ -15,9 +15,11 @@ use super::voxelize::{Case, Checked};
 use crate::compare::{Shape, exact};
 use crate::oracle::sum_voxels::sum_voxels;
 use crate::trial::{Check, Context, Failure, Listing};
+use inputs::{some_surface, some_texels};
 use twinlight_core::Backend;
 use twinlight_core::kernels::sum_voxels::{VoxelSums, VoxelSurface};
 use twinlight_core::kernels::voxelize::Voxels;
+use twinlight_fixtures::random::Random;
 
 /// Lists the trials.
 pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
@@ -77,4 +79,10 @@ impl Painted {
     fn agrees<B: Backend>(&self, cx: &Context<'_, B>) -> Check {
         self.agreed(cx).map(|_| ())
     }
+}
+
+/// As many surfaces, and texels that their textures are in.
+pub(crate) fn some_surfaces(count: usize, seed: u64) -> (Vec<VoxelSurface>, Vec<u32>) {
+    let mut random = Random::new(seed);
+    ((0..count).map(|_| some_surface(&mut random)).collect(), some_texels(&mut random))
 }

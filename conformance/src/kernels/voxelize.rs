@@ -109,3 +109,12 @@ fn same_voxels<B>(cx: &Context<'_, B>, got: &Occupied, want: &Occupied) -> Check
     exact(cx, "active", &got.active, &want.active, Shape::Line)?;
     exact(cx, "parents", &got.parents, &want.parents, Shape::Line)
 }
+
+/// The grid over a mesh's own bounds.
+pub(crate) fn over(mesh: &LatticeMesh, resolution: u32) -> twinlight_core::Result<VoxelGrid> {
+    let end = |axis: usize, greatest: bool| {
+        let all = mesh.vertices().iter().map(|v| v[axis]);
+        if greatest { all.max() } else { all.min() }.unwrap_or(0)
+    };
+    VoxelGrid::over([0, 1, 2].map(|axis| end(axis, false)), [0, 1, 2].map(|axis| end(axis, true)), resolution)
+}

@@ -70,11 +70,7 @@ pub fn sum_voxels(
 
 /// w of the contract, at a voxel's centre.
 pub fn weights(placed: &Placed, centre: Triple) -> Triple {
-    let axis = placed.dominant;
-    if placed.normal[axis] == 0 {
-        return [WHOLE, 0, 0];
-    }
-    let [of_2, of_0, of_1] = placed.edges(axis, centre).map(|[_, _, e]| e.max(0));
+    let [of_2, of_0, of_1] = placed.edges(placed.dominant, centre).map(|[_, _, e]| e.max(0));
     let areas = [of_0, of_1, of_2];
     let mut unit = 1;
     while areas.iter().sum::<i128>() / unit >= 1 << 17 {

@@ -15,7 +15,7 @@ use twinlight_fixtures::random::Random;
 
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "sum_voxels":
-        nothing_to_sum, one_fragment, random_surfaces, areas_of_every_length, textures_to_their_borders, no_area_is_its_first_corner,
+        nothing_to_sum, one_fragment, random_surfaces, areas_of_every_length, textures_to_their_borders, no_area_is_weighed_too,
         triangle_ladder, many_triangles,
     );
 }
@@ -121,8 +121,8 @@ fn textures_to_their_borders<B: Backend>(cx: &Context<'_, B>) -> Check {
     Painted { case, surfaces, texels }.agrees(cx)
 }
 
-/// Segments and points, which conservative voxels have: their first corner's normal and texel, wherever the centre is.
-fn no_area_is_its_first_corner<B: Backend>(cx: &Context<'_, B>) -> Check {
+/// Segments and points, which conservative voxels have.
+fn no_area_is_weighed_too<B: Backend>(cx: &Context<'_, B>) -> Check {
     let mut random = Random::new(cx.options.seed ^ 2);
     let mut triangles: Vec<[Point; 3]> = Vec::new();
     for _ in 0..100 {

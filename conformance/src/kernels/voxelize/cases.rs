@@ -1,7 +1,7 @@
 //! Edge ladders, meshes and grids of every kind, and meshes of more triangles than a task has.
 
 use super::inputs::{in_units, some_grid, some_mesh, unit_grid};
-use super::{CUTOFFS, Case, SEPARATIONS};
+use super::{CUTOFFS, Case, SEPARATIONS, over};
 use crate::kernels::property::hold;
 use crate::kernels::rasterize_lhb::inputs::{
     duplicates, fans_and_strips, mixed_sizes, snapped, thin, turned,
@@ -10,7 +10,7 @@ use crate::trial::{Check, Context, Listing, ensure, list_trials};
 use proptest::prelude::*;
 use twinlight_core::Backend;
 use twinlight_core::kernels::voxelize::{CONSERVATIVE, NO_CUTOFF, THIN};
-use twinlight_core::lattice::{LatticeMesh, VoxelGrid};
+use twinlight_core::lattice::LatticeMesh;
 use twinlight_fixtures::meshes;
 use twinlight_fixtures::random::Random;
 
@@ -77,15 +77,6 @@ fn fixture_meshes<B: Backend>(cx: &Context<'_, B>) -> Check {
         let grid = over(&mesh, resolution)?;
         Case::new(mesh, grid, SEPARATIONS[kind / 4]).cut(CUTOFFS[kind % 4]).agrees(cx)
     })
-}
-
-/// The grid over a mesh's own bounds.
-pub(super) fn over(mesh: &LatticeMesh, resolution: u32) -> twinlight_core::Result<VoxelGrid> {
-    let end = |axis: usize, greatest: bool| {
-        let all = mesh.vertices().iter().map(|v| v[axis]);
-        if greatest { all.max() } else { all.min() }.unwrap_or(0)
-    };
-    VoxelGrid::over([0, 1, 2].map(|axis| end(axis, false)), [0, 1, 2].map(|axis| end(axis, true)), resolution)
 }
 
 /// Bounds of so many cells that the cutoff is one less, as many, and one more.

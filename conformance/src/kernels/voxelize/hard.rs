@@ -1,8 +1,7 @@
 //! Hard cases: faces, edges and corners of voxels, ends of the grid, the least and the greatest that there is.
 
-use super::cases::over;
 use super::inputs::{Point, in_units, some_mesh, unit_grid};
-use super::{CUTOFFS, Case, SEPARATIONS, same_voxels};
+use super::{CUTOFFS, Case, SEPARATIONS, over, same_voxels};
 use crate::oracle::voxelize::{Triple, code};
 use crate::trial::{Check, Context, Listing, ensure, list_trials};
 use std::collections::BTreeSet;

@@ -1,7 +1,6 @@
 //! Conservative voxels hold the mesh as it was before it was snapped to the lattice and to the grid.
 
-use super::Case;
-use super::cases::over;
+use super::{Case, over};
 use crate::oracle::voxelize::{Placed, code};
 use crate::trial::{Check, Context, Failure, Listing, ensure, list_trials};
 use glam::DVec3;

@@ -38,9 +38,11 @@ fn weights_are_rounded_down_twice() {
 }
 
 #[test]
-fn triangles_without_area_count_as_their_first_corner() {
-    let placed = Placed::new([[0, 0, 0], [100, 50, 0], [200, 100, 0]], 64);
-    assert_eq!(weights(&placed, [96, 32, 32]), [WHOLE, 0, 0]);
+fn triangles_without_area_are_weighed_as_others_are() {
+    // No axis dominates, so that the first one does.
+    let segment = Placed::new([[0, 0, 0], [100, 50, 0], [200, 100, 0]], 64);
+    assert_eq!(weights(&segment, [96, 32, 32]), [8_192, 0, 8_192]);
+    assert_eq!(weights(&Placed::new([[9; 3]; 3], 64), [32; 3]), [WHOLE, 0, 0]);
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn an_edge_passes_a_cube_by() {
     assert!(met(flat, CONSERVATIVE).contains(&[1, 1, 1]));
     let away = [[10, 10, 96], [190, 10, 96], [10, 70, 96]];
     assert!(!met(away, CONSERVATIVE).contains(&[1, 1, 1]));
-    assert_eq!(met(away, THIN), [[0, 0, 1], [1, 0, 1], [0, 1, 1], [2, 0, 1]]);
+    assert_eq!(met(away, THIN), [[0, 0, 1], [1, 0, 1], [2, 0, 1]]);
     // Thin voxels have the triangle on a line through their centres.
     let corner_only = [[0, 0, 96], [70, 0, 96], [0, 70, 96]];
     assert_eq!(met(corner_only, THIN), [[0, 0, 1]]);
