@@ -3,10 +3,9 @@
 use super::inputs::{in_units, unit_grid};
 use super::{Case, Checked, SEPARATIONS};
 use crate::kernels::rasterize_lhb::inputs::{snapped, turned};
-use crate::oracle::voxelize::{Placed, Triple, code};
+use crate::oracle::voxelize::{Placed, Triple, voxel};
 use crate::trial::{Check, Context, Failure, Listing, ensure, list_trials};
 use glam::DVec3;
-use std::collections::BTreeSet;
 use twinlight_core::Backend;
 use twinlight_core::kernels::voxelize::{CONSERVATIVE, THIN};
 use twinlight_core::lattice::{LatticeMesh, VoxelGrid};
@@ -73,44 +72,56 @@ fn all_voxels(grid: &VoxelGrid) -> impl Iterator<Item = Triple> + use<> {
     cells(grid).flat_map(move |(x, y)| (0..nz).map(move |z| [x, y, z]))
 }
 
-/// Voxels that share a face with this one, or at least a corner.
-fn neighbours(grid: &VoxelGrid, voxel: Triple, share_faces: bool) -> impl Iterator<Item = Triple> + use<> {
-    let dims = grid.dims.map(i128::from);
+/// Steps to voxels that share a face, or at least a corner.
+fn steps(share_faces: bool) -> Vec<Triple> {
     let steps = (0..27).map(|i| [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1]);
-    let wanted = move |step: &Triple| {
-        let axes = step.iter().filter(|s| **s != 0).count();
-        axes == 1 || (!share_faces && axes > 1)
-    };
-    steps
-        .filter(wanted)
-        .map(move |step| [0, 1, 2].map(|axis| voxel[axis] + step[axis]))
-        .filter(move |voxel| (0..3).all(|axis| (0..dims[axis]).contains(&voxel[axis])))
+    let axes = |step: &Triple| step.iter().filter(|s| **s != 0).count();
+    steps.filter(|step| axes(step) == 1 || (!share_faces && axes(step) > 1)).collect()
+}
+
+/// Where a step leads to, if there is a voxel.
+fn stepped(grid: &VoxelGrid, voxel: Triple, step: Triple) -> Option<Triple> {
+    let to = [0, 1, 2].map(|axis| voxel[axis] + step[axis]);
+    (0..3).all(|axis| (0..i128::from(grid.dims[axis])).contains(&to[axis])).then_some(to)
+}
+
+/// Which voxels of a grid are not met.
+fn free(grid: &VoxelGrid, met: &[u32]) -> Vec<bool> {
+    let mut free = vec![true; grid.dims.iter().product::<u32>() as usize];
+    met.iter().for_each(|&code| free[index(grid, voxel(code))] = false);
+    free
 }
 
 /// No step from voxel to voxel that are both not met changes the winding: across faces for thin voxels, across corners for
 /// conservative ones. Returns how many are within.
-fn closes<B: Backend>(
-    cx: &Context<'_, B>,
-    mesh: &LatticeMesh,
-    grid: &VoxelGrid,
-    separation: u32,
-) -> Checked<usize> {
-    let met: BTreeSet<u32> =
-        Case::new(mesh.clone(), *grid, separation).found(cx)?.active.into_iter().collect();
-    let windings = windings(mesh, grid);
-    let is_free = |voxel: &Triple| !met.contains(&code(*voxel));
-    let winding = |voxel: Triple| windings[index(grid, voxel)];
+fn closes(grid: &VoxelGrid, windings: &[i32], met: &[u32], separation: u32) -> Checked<usize> {
+    let free = free(grid, met);
+    // Of each step and the one back, one will do.
+    let steps: Vec<Triple> =
+        steps(separation == THIN).into_iter().filter(|[x, y, z]| 9 * z + 3 * y + x > 0).collect();
     let mut within = 0;
-    for voxel in all_voxels(grid).filter(is_free) {
-        within += usize::from(winding(voxel) != 0);
-        let mut around = neighbours(grid, voxel, separation == THIN).filter(is_free);
-        let entered = around.find(|&other| winding(other) != winding(voxel));
-        ensure(entered.is_none(), || {
-            let place = format!("from {voxel:?} to {entered:?}, separation {separation}");
-            format!("{place}: winding {}, {:?}; {grid:?}", winding(voxel), entered.map(winding))
-        })?;
+    for from in all_voxels(grid).filter(|&v| free[index(grid, v)]) {
+        let winding = windings[index(grid, from)];
+        within += usize::from(winding != 0);
+        for to in steps.iter().filter_map(|&step| stepped(grid, from, step)) {
+            let other = windings[index(grid, to)];
+            ensure(!free[index(grid, to)] || other == winding, || {
+                format!("{from:?} to {to:?}: winding {winding}, {other}; separation {separation}, {grid:?}")
+            })?;
+        }
     }
     Ok(within)
+}
+
+/// Neither separation lets anything in. Returns the least that is within.
+fn is_closed<B: Backend>(cx: &Context<'_, B>, mesh: &LatticeMesh, grid: &VoxelGrid) -> Checked<usize> {
+    let windings = windings(mesh, grid);
+    let mut least = usize::MAX;
+    for separation in SEPARATIONS {
+        let met = Case::new(mesh.clone(), *grid, separation).found(cx)?.active;
+        least = least.min(closes(grid, &windings, &met, separation)?);
+    }
+    Ok(least)
 }
 
 /// Closed meshes, convex and not, through themselves and in each other.
@@ -124,12 +135,10 @@ fn v5_closed_meshes_are_not_entered<B: Backend>(cx: &Context<'_, B>) -> Check {
         ("displaced sphere", displaced),
         ("shells", meshes::shells(3, 2)),
     ] {
-        for resolution in if cx.full() { vec![9, 16, 21, 40] } else { vec![9, 21] } {
+        for resolution in if cx.full() { vec![9, 16, 31] } else { vec![9, 21] } {
             let (mesh, grid) = with_room(&mesh, resolution)?;
-            for separation in SEPARATIONS {
-                let within = closes(cx, &mesh, &grid, separation).map_err(|f: Failure| f.within(name))?;
-                ensure(within > 0 || resolution < 20, || format!("{name}: nothing within {grid:?}"))?;
-            }
+            let within = is_closed(cx, &mesh, &grid).map_err(|f: Failure| f.within(name))?;
+            ensure(within > 0 || resolution < 20, || format!("{name}: nothing within {grid:?}"))?;
         }
     }
     Ok(())
@@ -147,9 +156,7 @@ fn v5_boxes_in_face_planes<B: Backend>(cx: &Context<'_, B>) -> Check {
             let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
             let triangles = sides.map(|[a, b, c, d]| [[a, b, c], [a, c, d]].map(|t| t.map(corner)));
             let mesh = in_units(&triangles.concat());
-            for separation in SEPARATIONS {
-                closes(cx, &mesh, &grid, separation).map_err(|f| f.within(&format!("{begin} to {end}")))?;
-            }
+            is_closed(cx, &mesh, &grid).map_err(|f| f.within(&format!("{begin} to {end}")))?;
         }
     }
     Ok(())
@@ -167,18 +174,19 @@ fn v10_surface_inside_outside<B: Backend>(cx: &Context<'_, B>) -> Check {
         let (mesh, grid) = with_room(&mesh, 24)?;
         let windings = windings(&mesh, &grid);
         for separation in [THIN, CONSERVATIVE] {
-            let found = Case::new(mesh.clone(), grid, separation).found(cx)?;
-            let surface: BTreeSet<u32> = found.active.into_iter().collect();
-            let outside = flooded(&grid, &surface, separation == THIN);
-            let is_inside = |v: &Triple| !surface.contains(&code(*v)) && !outside.contains(&code(*v));
-            let inside: BTreeSet<u32> = all_voxels(&grid).filter(is_inside).map(code).collect();
-            let counts = [surface.len(), outside.len(), inside.len()];
-            let all = grid.dims.iter().product::<u32>() as usize;
+            let surface = Case::new(mesh.clone(), grid, separation).found(cx)?.active;
+            let free = free(&grid, &surface);
+            let outside = flooded(&grid, &free, &steps(separation == THIN));
+            let inside: Vec<bool> =
+                free.iter().zip(&outside).map(|(free, outside)| *free && !outside).collect();
+            let count = |of: &[bool]| of.iter().filter(|is| **is).count();
+            let (counts, all) = ([surface.len(), count(&outside), count(&inside)], free.len());
             let parted = counts.iter().sum::<usize>() == all && counts.iter().all(|&n| n > 100);
             ensure(parted, || format!("{name}: {counts:?} of {all}, separation {separation}"))?;
-            let stray = all_voxels(&grid)
-                .filter(|v| !surface.contains(&code(*v)))
-                .find(|&v| inside.contains(&code(v)) != (windings[index(&grid, v)] == 1));
+            let stray = all_voxels(&grid).find(|&v| {
+                let i = index(&grid, v);
+                free[i] && inside[i] != (windings[i] == 1)
+            });
             ensure(stray.is_none(), || format!("{name}: {stray:?}, separation {separation}"))?;
         }
     }
@@ -186,13 +194,16 @@ fn v10_surface_inside_outside<B: Backend>(cx: &Context<'_, B>) -> Check {
 }
 
 /// What a flood from the first voxel reaches.
-fn flooded(grid: &VoxelGrid, walls: &BTreeSet<u32>, across_faces: bool) -> BTreeSet<u32> {
-    let mut reached = BTreeSet::from([0]);
+fn flooded(grid: &VoxelGrid, free: &[bool], steps: &[Triple]) -> Vec<bool> {
+    let mut reached = vec![false; free.len()];
     let mut next = vec![[0; 3]];
-    while let Some(voxel) = next.pop() {
-        for other in neighbours(grid, voxel, across_faces) {
-            if !walls.contains(&code(other)) && reached.insert(code(other)) {
-                next.push(other);
+    reached[0] = true;
+    while let Some(from) = next.pop() {
+        for to in steps.iter().filter_map(|&step| stepped(grid, from, step)) {
+            let i = index(grid, to);
+            if free[i] && !reached[i] {
+                reached[i] = true;
+                next.push(to);
             }
         }
     }

@@ -23,7 +23,7 @@ type Corner = [i128; 3];
 fn v4_touched_before_snapping<B: Backend>(cx: &Context<'_, B>) -> Check {
     let mut random = Random::new(cx.options.seed ^ 41);
     for (reach, resolution) in [(500, 4), (900, 64), (3_000, 33), (18_000, 5), (18_000, 31), (9_000, 48)] {
-        for _ in 0..if cx.full() { 6 } else { 1 } {
+        for _ in 0..if cx.full() { 3 } else { 1 } {
             let triangles: Vec<[Corner; 3]> =
                 (0..120).map(|i| some_triangle(&mut random, reach, i < 20)).collect();
             holds_all(cx, &triangles, resolution)?;
