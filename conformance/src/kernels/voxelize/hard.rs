@@ -99,12 +99,12 @@ fn v2_corners_on_corners_and_edges_on_edges<B: Backend>(cx: &Context<'_, B>) -> 
 fn v3_upper_bounds_are_in_the_last_voxel<B: Backend>(cx: &Context<'_, B>) -> Check {
     let dims = [5, 3, 4];
     let grid = unit_grid(dims, 6);
-    for axis in 0..3 {
-        let end = (dims[axis] * 64) as i32;
+    for (axis, n) in dims.map(|n: u32| n as i32).into_iter().enumerate() {
+        let end = n * 64;
         for coordinate in [end - 1, end, end + 1, end + 70, 20_000] {
             let corner = |u: i32, v: i32| turned(axis, [coordinate, 70 + u, 70 + v]);
             let mesh = in_units(&[[corner(0, 0), corner(50, 0), corner(0, 50)]]);
-            let last = turned(axis, [dims[axis] as i32 - 1, 1, 1]).map(i128::from);
+            let last = turned(axis, [n - 1, 1, 1]).map(i128::from);
             for separation in SEPARATIONS {
                 meets(cx, &Case::new(mesh.clone(), grid, separation), [last])?;
             }

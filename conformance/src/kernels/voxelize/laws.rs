@@ -105,13 +105,13 @@ fn shifts_shift<B: Backend>(cx: &Context<'_, B>) -> Check {
         let (scale, width) = ([1 << 14, 9_999, 12_345][random.index(3)], 1_i64 << subvoxel_bits);
         let middle = dims.map(|n| ((i64::from(n) << subvoxel_bits >> 1) << 14) as i32);
         let grid = VoxelGrid { dims, scale, offset: middle, subvoxel_bits };
-        let within = VoxelGrid { dims: [8; 3], offset: [(4 * width << 14) as i32; 3], ..grid };
+        let within = VoxelGrid { dims: [8; 3], offset: [((4 * width) << 14) as i32; 3], ..grid };
         let mut mesh = some_mesh(&mut random, &within, count);
-        let reach = (4 * width << 14) / i64::from(scale);
+        let reach = ((4 * width) << 14) / i64::from(scale);
         let vertices = mesh.vertices().iter().map(|v| v.map(|c| c.clamp(-reach as i16, reach as i16)));
         mesh = LatticeMesh::new(vertices.collect(), mesh.triangles().to_vec())?;
         let by = [0, 1, 2].map(|_| random.index(9) as i64 - 4);
-        let offset = [0, 1, 2].map(|axis| (i64::from(middle[axis]) + (by[axis] * width << 14)) as i32);
+        let offset = [0, 1, 2].map(|axis| (i64::from(middle[axis]) + ((by[axis] * width) << 14)) as i32);
         let case = Case::new(mesh, grid, SEPARATIONS[kind / 4]).cut(CUTOFFS[kind % 4]);
         let moved = Case { grid: VoxelGrid { offset, ..grid }, ..case.clone() }.found(cx)?;
         let found = case.found(cx)?;
