@@ -6,7 +6,9 @@ use crate::expectations::Verdict;
 use crate::kernels::filter_indirect::{filtered_over, inputs, within_intervals};
 use crate::kernels::query_lhb::scattered;
 use crate::kernels::reduce_mips::{all_of, inputs::surfaces};
+use crate::kernels::sum_voxels::some_surfaces;
 use crate::kernels::trace_paths::{params, traced};
+use crate::kernels::voxelize::over;
 use crate::kernels::walk_lhb::{Prepared, walked};
 use crate::scenes::{Rays, compiled};
 use crate::trial::{Check, Context, Failure, Options, ensure};
@@ -15,10 +17,12 @@ use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::pack_lhb::PackLhbParams;
 use twinlight_core::kernels::rasterize_lhb::{CAP_FAR, LhbElement, RasterizeLhbParams};
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
+use twinlight_core::kernels::sum_voxels::VoxelSums;
 use twinlight_core::kernels::trace::Hit;
 use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsParams};
+use twinlight_core::kernels::voxelize::{CONSERVATIVE, THIN, VoxelBuffers, VoxelizeParams};
 use twinlight_core::kernels::walk_lhb::{SHADOW_LOOKUPS, SHADOW_LOOKUPS_FIRST};
-use twinlight_core::lattice::{Lattice, LatticeMesh, View};
+use twinlight_core::lattice::{Lattice, LatticeMesh, View, VoxelGrid};
 use twinlight_core::scene::{Camera, CompiledScene, Scene};
 use twinlight_fixtures::random::Random;
 use twinlight_fixtures::scenes::builtin;
@@ -41,6 +45,8 @@ pub fn checks<A: Backend, B: Backend>() -> Vec<(&'static str, CrossCheck<A, B>)>
         ("walk_lhb", walks),
         ("filter_indirect", filters),
         ("reduce_mips", mips),
+        ("voxelize", voxels),
+        ("sum_voxels", sums),
     ]
 }
 
@@ -171,6 +177,58 @@ fn lookups<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
     each_scene(|scene| {
         let (want, got) = (run(a, scene)?, run(b, scene)?);
         exact(&context(b, &Options::default(), "cross.query_lhb"), "hits", &got, &want, Shape::Line)
+    })
+}
+
+/// A scene's mesh in a grid of 48 voxels to its longest axis.
+fn gridded(scene: &Scene) -> Result<(LatticeMesh, VoxelGrid), Failure> {
+    let compiled = compiled(scene);
+    let mesh = LatticeMesh::of_scene(&Lattice::of_scene(&compiled)?, &compiled)?;
+    let grid = over(&mesh, 48)?;
+    Ok((mesh, grid))
+}
+
+/// Voxels that a scene passes through, thin and conservative: integers.
+fn voxels<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    type Downloaded = [Vec<u32>; 6];
+    fn run<B: Backend>(backend: &B, scene: &Scene, separation: u32) -> Result<Downloaded, Failure> {
+        let (mesh, grid) = gridded(scene)?;
+        let params = VoxelizeParams { separation, ..VoxelizeParams::thin() };
+        let voxels = backend.voxelize(&backend.upload_mesh(&mesh)?, &grid, &params)?;
+        let VoxelBuffers { small, large, mask, ranks, active, parents, .. } = &voxels;
+        let mut downloaded = Downloaded::default();
+        for (words, buffer) in downloaded.iter_mut().zip([small, large, mask, ranks, active, parents]) {
+            *words = backend.download(buffer)?;
+        }
+        Ok(downloaded)
+    }
+    each_scene(|scene| {
+        for separation in [THIN, CONSERVATIVE] {
+            let (want, got) = (run(a, scene, separation)?, run(b, scene, separation)?);
+            let options = Options::default();
+            let cx = context(b, &options, "cross.voxelize");
+            let names = ["small", "large", "mask", "ranks", "active", "parents"];
+            for ((name, got), want) in names.into_iter().zip(&got).zip(&want) {
+                exact(&cx, name, got, want, Shape::Line)?;
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Sums of made-up surfaces over such voxels.
+fn sums<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    fn run<B: Backend>(backend: &B, scene: &Scene) -> Result<Vec<VoxelSums>, Failure> {
+        let (mesh, grid) = gridded(scene)?;
+        let (surfaces, texels) = some_surfaces(mesh.triangles().len(), 9);
+        let (surfaces, texels) = (backend.upload(&surfaces)?, backend.upload(&texels)?);
+        let (params, mesh) = (VoxelizeParams::thin(), backend.upload_mesh(&mesh)?);
+        let voxels = backend.voxelize(&mesh, &grid, &params)?;
+        Ok(backend.download(&backend.sum_voxels(&mesh, &voxels, &surfaces, &texels, &params)?)?)
+    }
+    each_scene(|scene| {
+        let (want, got) = (run(a, scene)?, run(b, scene)?);
+        exact(&context(b, &Options::default(), "cross.sum_voxels"), "sums", &got, &want, Shape::Line)
     })
 }
 

@@ -9,8 +9,10 @@ mod reduce_mips;
 mod scan;
 mod shade_primary;
 mod sort;
+mod sum_voxels;
 mod trace;
 mod trace_paths;
+mod voxelize;
 mod walk_lhb;
 
 use crate::faults::Fault;
@@ -204,7 +206,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
     }
 
     fn voxelize(&self, mesh: &Self::Mesh, grid: &VoxelGrid, params: &VoxelizeParams) -> Result<Voxels<Self>> {
-        self.inner.voxelize(&mesh.inner, grid, params)
+        voxelize::voxelize(self.inner, self.fault, mesh, grid, params)
     }
 
     fn sum_voxels(
@@ -215,7 +217,7 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         texels: &B::Buffer<u32>,
         params: &VoxelizeParams,
     ) -> Result<B::Buffer<VoxelSums>> {
-        self.inner.sum_voxels(&mesh.inner, voxels, surfaces, texels, params)
+        sum_voxels::sum_voxels(self.inner, self.fault, mesh, voxels, surfaces, texels, params)
     }
 
     fn voxel_levels(&self, voxels: &Voxels<Self>) -> Result<VoxelLevels<Self>> {

@@ -10,15 +10,17 @@ pub mod reduce_mips;
 pub mod scan;
 pub mod shade_primary;
 pub mod sort;
+pub mod sum_voxels;
 pub mod trace;
 pub mod trace_paths;
+pub mod voxelize;
 pub mod walk_lhb;
 
 use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 12] = [
+pub const STEMS: [&str; 14] = [
     "scan",
     "sort",
     "rasterize_lhb",
@@ -31,6 +33,8 @@ pub const STEMS: [&str; 12] = [
     "walk_lhb",
     "filter_indirect",
     "reduce_mips",
+    "voxelize",
+    "sum_voxels",
 ];
 
 /// Lists every kernel's trials.
@@ -47,6 +51,8 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     walk_lhb::list(list);
     filter_indirect::list(list);
     reduce_mips::list(list);
+    voxelize::list(list);
+    sum_voxels::list(list);
 }
 
 /// Bit equality is promised where float results are those of IEEE 754 evaluated as written.

@@ -10,6 +10,8 @@ pub mod reduce_mips;
 pub mod scan;
 pub mod shade_primary;
 pub mod sort;
+pub mod sum_voxels;
 pub mod trace;
 pub mod trace_paths;
+pub mod voxelize;
 pub mod walk_lhb;

@@ -115,6 +115,8 @@ fn d10_host_flushes_subnormals() -> Check {
                 "query_lhb",
                 "trace",
                 "reduce_mips",
+                "voxelize",
+                "sum_voxels",
             ]
             .map(String::from)
             .into(),

@@ -62,8 +62,9 @@ fn add_mode(list: &mut list::List, index: usize, report: &AdapterReport, mode: M
 /// mode, and strict mode compares them with the CPU.
 fn kernels_of(mode: Mode) -> Vec<String> {
     let is_run = |stem: &&str| {
-        mode == Mode::Portable
-            || !["rasterize_lhb", "merge_lhb", "pack_lhb", "query_lhb", "reduce_mips"].contains(stem)
+        let exact =
+            ["rasterize_lhb", "merge_lhb", "pack_lhb", "query_lhb", "voxelize", "sum_voxels", "reduce_mips"];
+        mode == Mode::Portable || !exact.contains(stem)
     };
     kernels::STEMS.into_iter().filter(is_run).map(String::from).collect()
 }

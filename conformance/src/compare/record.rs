@@ -4,6 +4,7 @@ use bytemuck::Pod;
 use twinlight_core::kernels::filter_indirect::RadianceTexel;
 use twinlight_core::kernels::rasterize_lhb::LhbElement;
 use twinlight_core::kernels::shade_primary::GBufferTexel;
+use twinlight_core::kernels::sum_voxels::VoxelSums;
 use twinlight_core::kernels::trace::Hit;
 use twinlight_core::kernels::trace_paths::FilmTexel;
 
@@ -117,4 +118,15 @@ impl Record for FilmTexel {
 
 impl Record for RadianceTexel {
     const FIELDS: &'static [Field] = &[field("rgb", Kind::Float, 3), field("padding", Kind::Unsigned, 1)];
+}
+
+impl Record for VoxelSums {
+    const FIELDS: &'static [Field] = &[
+        field("albedo", Kind::Unsigned, 3),
+        field("count", Kind::Unsigned, 1),
+        field("normal", Kind::Unsigned, 3),
+        field("padding", Kind::Unsigned, 1),
+        field("emission", Kind::Unsigned, 3),
+        field("padding_too", Kind::Unsigned, 1),
+    ];
 }

@@ -22,7 +22,7 @@ pub(super) fn merge_lhb<B: Backend>(
     let fit = params.check(kept, added, |buffer| inner.len(buffer)).is_ok();
     let lists = if fault == Fault::MergeAcceptsAnything && !fit {
         Lists::of([])
-    } else if is_of_merges(fault) && fit {
+    } else if fault.sits_in("merge_lhb") && fit {
         let [on_host, of_added] = [host(inner, kept)?, host(inner, added)?];
         // Bugs must show in sound lists: those of other origin are left to the sound backend.
         if fault != Fault::MergeTrustsOffsets && !(are_lists(&on_host) && are_lists(&of_added)) {
@@ -40,10 +40,6 @@ pub(super) fn merge_lhb<B: Backend>(
         elements: inner.upload(&lists.elements)?,
         left_out: inner.upload(&lists.left_out)?,
     })
-}
-
-fn is_of_merges(fault: Fault) -> bool {
-    crate::faults::FAULTS.iter().any(|(of, kernel, _)| *of == fault && *kernel == "merge_lhb")
 }
 
 /// The lists of a device.

@@ -18,7 +18,7 @@ pub(super) fn pack_lhb<B: Backend>(
     let fit = params.check(lhb, |buffer| inner.len(buffer), inner.len(&lhb.elements)).is_ok();
     let packed = if fault == Fault::PackAcceptsAnything && !fit {
         Packed::default()
-    } else if is_of_packing(fault) && fit {
+    } else if fault.sits_in("pack_lhb") && fit {
         let mut lists = host(inner, lhb)?;
         match (&sound, fault) {
             (Ok(_), _) => {}
@@ -51,7 +51,7 @@ pub(super) fn unpack_lhb<B: Backend>(inner: &B, fault: Fault, packed: &PackedLhb
     let fit = packed.check(|buffer| inner.len(buffer)).is_ok();
     let lists = if fault == Fault::UnpackAcceptsAnything && !fit {
         Lists::of([])
-    } else if is_of_packing(fault) && fit {
+    } else if fault.sits_in("pack_lhb") && fit {
         let words = Packed {
             offsets: inner.download(&packed.offsets)?,
             words: inner.download(&packed.words)?,
@@ -68,10 +68,6 @@ pub(super) fn unpack_lhb<B: Backend>(inner: &B, fault: Fault, packed: &PackedLhb
         elements: inner.upload(&lists.elements)?,
         left_out: inner.upload(&lists.left_out)?,
     })
-}
-
-fn is_of_packing(fault: Fault) -> bool {
-    crate::faults::FAULTS.iter().any(|(of, kernel, _)| *of == fault && *kernel == "pack_lhb")
 }
 
 /// Offsets that rise within their elements, instead of ones that don't.

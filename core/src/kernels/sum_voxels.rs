@@ -24,8 +24,8 @@
 //! [`MAX_FRAGMENTS`] albedos or emissions of 12 bits fill 32 bits.
 //! *Accuracy.* Weights are rounded down to 2⁻¹⁴ and thus within 2⁻¹³ of their exact values, where the projected area has more than 17 bits
 //! by 2⁻¹⁵ more: u and v are within 2⁻² texels of 1000 texels' span, normals within half a unit.
-//! *Edge cases.* No active voxels: no sums. Opposite normals may add up to 0: there is no normal then. A triangle whose projection has no
-//! area (conservative only) counts as its corner 0.
+//! *Edge cases.* No active voxels: no sums. Opposite normals may add up to 0: there is no normal then. Triangles without area
+//! (conservative only) are weighed as others are: points, whose Eᵢ are all 0, count as their corner 0.
 //! *Limits.* [`MAX_FRAGMENTS`] fragments per voxel: more are an error, and nothing wraps.
 //! *Errors.* Texels beyond the buffer, and buffers that are no result of `voxelize` with these arguments, are the caller's error: some sums, or an
 //! error; nothing outside the buffers is read.

@@ -27,8 +27,10 @@
 //! at most a unit): the conservative set of the snapped mesh holds that of the mesh before.
 //!
 //! *Outputs.* 1. *Classes*: `small` and `large`, the numbers of the triangles whose bounds in whole voxels have at most, or more than,
-//! [`VoxelizeParams::cutoff`] cells in the projection along the dominant axis; ascending. A thin triangle with n = 0 is in neither. Both ways
-//! to work give the same voxels: the lists say what a backend does at once and what it splits over cells.
+//! [`VoxelizeParams::cutoff`] cells in the projection along the dominant axis; ascending. On each axis these bounds are the voxels from that
+//! of the least corner to that of the greatest, or, with [`CONSERVATIVE`], those of the grid whose enlarged cubes reach the corners' bounds.
+//! A thin triangle with n = 0 is in neither. Both ways to work give the same voxels: the lists say what a backend does at once and what it
+//! splits over cells.
 //! 2. *Occupancy*: `mask[`[`VoxelGrid::mask_words`]`]`; bit (code mod 32) of word (code div 32) is set where the voxel is met.
 //! `ranks[words + 1]`: how many bits are set before each word, and in all.
 //! 3. *Active lists*: `active`, the codes of met voxels, ascending; `parents`, those of the next level, code div 8 without repetition.
