@@ -5,6 +5,7 @@ mod conform;
 mod render;
 mod scene;
 mod values;
+mod voxel;
 
 pub use compare::CompareArgs;
 pub use conform::ConformArgs;
@@ -14,6 +15,7 @@ pub use render::{
 };
 pub use scene::{ConvertArgs, InspectArgs, SceneCommand};
 pub use values::{BackendChoice, Bounces, FrameRange, Size};
+pub use voxel::VoxelArgs;
 
 use crate::exit;
 use clap::{Parser, Subcommand};

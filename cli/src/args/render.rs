@@ -1,5 +1,6 @@
 //! `render`.
 
+use super::VoxelArgs;
 use super::values::{
     BackendChoice, Bounces, Bytes, CameraArg, FrameRange, Size, frame_rate, moment, seconds,
 };
@@ -124,6 +125,8 @@ pub enum MethodName {
     Reference,
     /// Spherical layered hit buffers: indirect light is looked up, not traced
     Slhb,
+    /// Voxel cone tracing: indirect light is gathered from lit voxels through a few wide cones, without noise
+    Voxel,
 }
 
 impl MethodName {
@@ -132,6 +135,7 @@ impl MethodName {
         match self {
             Self::Reference => "reference",
             Self::Slhb => "slhb",
+            Self::Voxel => "voxel",
         }
     }
 }
@@ -428,6 +432,9 @@ pub struct RenderArgs {
     /// Instead of rendering, draw what the method works with: lhb:VIEW, a hit buffer's layer counts and layers
     #[arg(long, value_name = "WHAT", help_heading = "Method slhb")]
     pub show: Option<Show>,
+
+    #[command(flatten)]
+    pub voxel: VoxelArgs,
 
     #[command(flatten)]
     pub load: LoadArgs,

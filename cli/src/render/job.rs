@@ -10,6 +10,7 @@ use twinlight::kernels::shade_primary::GBufferTexel;
 use twinlight::kernels::trace_paths::FilmTexel;
 use twinlight::methods::reference::Settings;
 use twinlight::methods::slhb::LookupSettings;
+use twinlight::methods::voxel::VoxelSettings;
 use twinlight::scene::Camera;
 
 /// Samples per pixel when only the time is limited: never the first to end.
@@ -29,6 +30,8 @@ pub struct Job {
     pub lookups: LookupSettings,
     /// Window over which indirect light is averaged, pixels; 1 averages nothing.
     pub filter: u32,
+    /// For voxel.
+    pub voxels: VoxelSettings,
     /// For the method.
     pub settings: Settings,
     /// Time limit.
@@ -50,11 +53,18 @@ impl Job {
             (Some(method), _) => method,
             (None, None) => MethodName::Reference,
             (None, Some(name)) => MethodName::from_str(name, false).map_err(|_| {
-                input("render.method", format!("no method is called '{name}'; there are reference and slhb"))
+                input(
+                    "render.method",
+                    format!("no method is called '{name}'; there are reference, slhb and voxel"),
+                )
             })?,
         };
         if let Some(flag) = args.slhb.asked_for().filter(|_| method != MethodName::Slhb) {
             let what = format!("{flag} is for --method slhb, and this is {}", method.key());
+            return Err(Failure::Usage(what));
+        }
+        if let Some(flag) = args.voxel.asked_for().filter(|_| method != MethodName::Voxel) {
+            let what = format!("{flag} is for --method voxel, and this is {}", method.key());
             return Err(Failure::Usage(what));
         }
         let size = args.size.or(own.size.map(|[w, h]| Size(w, h))).unwrap_or(Size(512, 512));
@@ -72,12 +82,17 @@ impl Job {
         } else {
             samples
         };
+        let bounces = args.bounces.map_or(own.bounces, |Bounces(bounces)| bounces);
+        let seed = args.seed.or(own.seed).unwrap_or(0);
+        let voxels = args.voxel.settings(bounces, seed);
+        // Cones gather the rest.
+        let sampled = if method == MethodName::Voxel { Some(voxels.bounces.min(1)) } else { bounces };
         let settings = Settings {
             width: size.0,
             height: size.1,
             samples,
-            bounces: args.bounces.map_or(own.bounces, |Bounces(bounces)| bounces),
-            seed: args.seed.or(own.seed).unwrap_or(0),
+            bounces: sampled,
+            seed,
             sampler: args.sampler.into(),
             ..Settings::default()
         };
@@ -102,7 +117,12 @@ impl Job {
             gather: knobs.gather == GatherName::All,
             interleave: knobs.interleave,
         };
-        Ok(Self { method, lookups, filter: knobs.filter, settings, time, camera })
+        Ok(Self { method, lookups, filter: knobs.filter, voxels, settings, time, camera })
+    }
+
+    /// How often light is scattered at most, whichever way it is followed.
+    pub fn bounces(&self) -> Option<u32> {
+        if self.method == MethodName::Voxel { Some(self.voxels.bounces) } else { self.settings.bounces }
     }
 }
 

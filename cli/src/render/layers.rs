@@ -17,13 +17,13 @@ pub struct Pictures<'a> {
 }
 
 impl<'a> Pictures<'a> {
-    /// Pictures of a film, with filtered light where `surfaces` have some.
+    /// Pictures of a film, with the light that was made for `surfaces` where they have some.
     ///
     /// # Errors
     /// When the film has no pixels.
     pub fn new(film: &'a Film, surfaces: Option<&'a Surfaces>, display: Display) -> Result<Self, Failure> {
-        let filtered = surfaces.and_then(|surfaces| surfaces.filtered.as_ref());
-        let radiance = filtered.map_or_else(|| film.radiance(), |filtered| filtered.radiance.clone());
+        let made = surfaces.and_then(|surfaces| surfaces.made.as_ref());
+        let radiance = made.map_or_else(|| film.radiance(), |made| made.radiance.clone());
         let beauty = Image::new(film.width(), film.height(), radiance).map_err(Failure::Pictures)?;
         Ok(Self { film, surfaces, beauty, display })
     }
@@ -43,8 +43,8 @@ impl<'a> Pictures<'a> {
         let mut image = LayeredImage::new(self.film.width(), self.film.height());
         image.add_rgb("", self.beauty.pixels());
         image.add_rgb("direct", &self.film.direct());
-        match self.surfaces.and_then(|surfaces| surfaces.filtered.as_ref()) {
-            Some(filtered) => image.add_rgb("indirect", &filtered.indirect),
+        match self.surfaces.and_then(|surfaces| surfaces.made.as_ref()) {
+            Some(made) => image.add_rgb("indirect", &made.indirect),
             None => image.add_rgb("indirect", &self.film.indirect()),
         }
         // That of the samples, whatever is averaged.

@@ -157,6 +157,7 @@ mod tests {
             method: crate::args::MethodName::Reference,
             lookups: slhb::LookupSettings::default(),
             filter: 1,
+            voxels: twinlight::methods::voxel::VoxelSettings::default(),
             settings,
             time: None,
             camera: Camera::of_scene(&scene).unwrap(),

@@ -15,7 +15,7 @@ use twinlight::gpu::GpuBackend;
 use twinlight::kernels::shade_primary::GBufferTexel;
 use twinlight::methods::gbuffer;
 use twinlight::methods::reference::Film;
-use twinlight::methods::slhb::{self, Filtered};
+use twinlight::methods::{slhb, voxel};
 use twinlight::{Backend, BackendInfo, Error};
 
 /// Hit buffers, for the sidecar.
@@ -42,10 +42,32 @@ pub struct Surfaces {
     pub gbuffer: Vec<GBufferTexel>,
     /// Time for it.
     pub gbuffer_time: Duration,
-    /// The picture with its indirect light averaged, where that was asked for.
-    pub filtered: Option<Filtered>,
+    /// The picture, where it is more than the samples' mean.
+    pub made: Option<Made>,
     /// Time for that.
-    pub filter_time: Duration,
+    pub made_time: Duration,
+}
+
+/// A picture whose indirect light is averaged over pixels, or comes through cones.
+pub struct Made {
+    /// Of both kinds of light.
+    pub radiance: Vec<[f32; 3]>,
+    /// Of indirect light.
+    pub indirect: Vec<[f32; 3]>,
+}
+
+/// Lit voxels, for the sidecar.
+pub struct Voxelized {
+    /// Active voxels of the finest level.
+    pub count: u32,
+    /// Of levels and values.
+    pub bytes: u64,
+    /// To voxelize, sum up surfaces and list levels.
+    pub voxelize_time: Duration,
+    /// To light them.
+    pub light_time: Duration,
+    /// To reduce them.
+    pub reduce_time: Duration,
 }
 
 /// What a backend made of a job.
@@ -56,6 +78,8 @@ pub struct Done {
     pub surfaces: Option<Surfaces>,
     /// The method's hit buffers, where it has any.
     pub lookups: Option<Built>,
+    /// The method's voxels, where it has any.
+    pub voxels: Option<Voxelized>,
     /// What ran it.
     pub info: BackendInfo,
     /// Time to make the scene resident.
@@ -126,12 +150,16 @@ impl Session<'_> {
         let upload_time = start.elapsed();
 
         let buffers = match self.job.method {
-            MethodName::Reference => None,
+            MethodName::Reference | MethodName::Voxel => None,
             // Keeping takes memory, and a single picture has no use for it.
             MethodName::Slhb if self.args.frames.is_none() => {
                 Some(slhb::build(backend, compiled, &self.job.lookups)?)
             }
             MethodName::Slhb => Some(kept.build(backend, compiled, &self.job.lookups)?),
+        };
+        let lit = match self.job.method {
+            MethodName::Voxel => Some(voxel::build(backend, &resident, compiled, &self.job.voxels)?),
+            _ => None,
         };
         let lookups = buffers.as_ref().map(|buffers| Built {
             time: buffers.build_time,
@@ -159,7 +187,7 @@ impl Session<'_> {
         if !wanted && saved {
             tell(format!("{}: the render ended early ({})", self.missing(), taken.stop.name()));
         }
-        let surfaces = match wanted.then(|| self.surfaces(backend, &resident, &taken.film)) {
+        let surfaces = match wanted.then(|| self.surfaces(backend, &resident, lit.as_ref(), &taken.film)) {
             None => None,
             Some(Ok(surfaces)) => Some(surfaces),
             Some(Err(Error::Unsupported(why))) => {
@@ -168,12 +196,21 @@ impl Session<'_> {
             }
             Some(Err(error)) => return Err(error),
         };
-        Ok(Done { taken, surfaces, lookups, info: backend.info(), upload_time })
+        let voxels = lit.as_ref().map(|lit| Voxelized {
+            count: lit.voxels(),
+            bytes: lit.bytes(backend),
+            voxelize_time: lit.voxelize_time,
+            light_time: lit.light_time,
+            reduce_time: lit.reduce_time,
+        });
+        Ok(Done { taken, surfaces, lookups, voxels, info: backend.info(), upload_time })
     }
 
     /// What a picture lacks without [`Surfaces`].
     fn missing(&self) -> &'static str {
-        if self.job.filter > 1 {
+        if self.job.method == MethodName::Voxel {
+            "no albedo, normal, depth and id layers, and no indirect light"
+        } else if self.job.filter > 1 {
             "no albedo, normal, depth and id layers, and indirect light is not filtered"
         } else {
             "no albedo, normal, depth and id layers"
@@ -184,6 +221,7 @@ impl Session<'_> {
         &self,
         backend: &B,
         resident: &B::Scene,
+        lit: Option<&voxel::Lit<B>>,
         film: &Film,
     ) -> twinlight::Result<Surfaces> {
         let (job, compiled) = (self.job, &self.prepared.compiled);
@@ -192,10 +230,18 @@ impl Session<'_> {
         let texels = backend.download(&gbuffer)?;
         let gbuffer_time = start.elapsed();
         let start = Instant::now();
-        let filtered = match job.filter {
-            1 => None,
-            window => Some(slhb::filter(backend, compiled, &job.camera, &gbuffer, film, window)?),
+        let made = match (lit, job.filter) {
+            (Some(lit), _) => {
+                let gathered =
+                    voxel::gather(backend, compiled, lit, &job.camera, &texels, film, &job.voxels)?;
+                Some(Made { radiance: gathered.radiance, indirect: gathered.indirect })
+            }
+            (None, 1) => None,
+            (None, window) => {
+                let filtered = slhb::filter(backend, compiled, &job.camera, &gbuffer, film, window)?;
+                Some(Made { radiance: filtered.radiance, indirect: filtered.indirect })
+            }
         };
-        Ok(Surfaces { gbuffer: texels, gbuffer_time, filtered, filter_time: start.elapsed() })
+        Ok(Surfaces { gbuffer: texels, gbuffer_time, made, made_time: start.elapsed() })
     }
 }

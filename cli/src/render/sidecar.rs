@@ -47,7 +47,7 @@ pub fn attributes(
         ("seed", settings.seed.to_string()),
         ("sampler", sampler_name(settings.sampler).into()),
         ("samples", done.taken.samples().0.to_string()),
-        ("bounces", settings.bounces.map_or("unlimited".into(), |n| n.to_string())),
+        ("bounces", job.bounces().map_or("unlimited".into(), |n| n.to_string())),
         ("stop", done.taken.stop.name().into()),
     ];
     attributes.extend(moment.map(|moment| ("seconds", moment.seconds.to_string())));
@@ -71,7 +71,9 @@ pub fn json(
     let pixels = u64::from(settings.width) * u64::from(settings.height);
     let kernel = if done.lookups.is_some() { "walk_lhb" } else { "trace_paths" };
     let packed = done.lookups.as_ref().filter(|_| job.lookups.elements != Elements::Full);
-    let filtered = done.surfaces.as_ref().filter(|surfaces| surfaces.filtered.is_some());
+    let made = done.surfaces.as_ref().filter(|surfaces| surfaces.made.is_some());
+    let voxels = done.voxels.as_ref();
+    let (filtered, gathered) = if voxels.is_some() { (None, made) } else { (made, None) };
     let value = json!({
         "twinlight": env!("CARGO_PKG_VERSION"),
         "scene": { "source": args.scene, "triangles": prepared.scene.triangle_count() },
@@ -91,10 +93,17 @@ pub fn json(
                 "interleave": job.lookups.interleave,
                 "filter": job.filter,
             })),
+            "voxel": voxels.map(|_| json!({
+                "grid": job.voxels.grid,
+                "storage": job.voxels.storage.to_string(),
+                "cones": job.voxels.cones.to_string(),
+                "light_samples": job.voxels.light_samples,
+                "bounces": job.voxels.bounces,
+            })),
             "size": [settings.width, settings.height],
             "spp": args.spp.or(job.time.is_none().then_some(settings.samples)),
             "time_s": job.time.map(seconds),
-            "bounces": settings.bounces,
+            "bounces": job.bounces(),
             "seed": settings.seed,
             "sampler": sampler_name(settings.sampler),
             "camera": {
@@ -115,6 +124,7 @@ pub fn json(
             "lhb_views": done.lookups.as_ref().map(|built| built.views),
             "lhb_elements": done.lookups.as_ref().map(|built| built.elements),
             "lhb_elements_kept": done.lookups.as_ref().map(|built| built.kept),
+            "voxels": voxels.map(|built| built.count),
             "samples": { "least": least, "most": most },
             "paths_per_second": done.taken.paths_per_second(),
         },
@@ -126,7 +136,11 @@ pub fn json(
             "pack_lhb": packed.map(|built| seconds(built.pack_time)),
             (kernel): seconds(done.taken.elapsed),
             "shade_primary": done.surfaces.as_ref().map(|surfaces| seconds(surfaces.gbuffer_time)),
-            "filter_indirect": filtered.map(|surfaces| seconds(surfaces.filter_time)),
+            "filter_indirect": filtered.map(|surfaces| seconds(surfaces.made_time)),
+            "voxelize": voxels.map(|built| seconds(built.voxelize_time)),
+            "light_voxels": voxels.map(|built| seconds(built.light_time)),
+            "reduce_mips": voxels.map(|built| seconds(built.reduce_time)),
+            "trace_cones": gathered.map(|surfaces| seconds(surfaces.made_time)),
             "write": seconds(times.write),
             "total": seconds(times.total),
         },
@@ -134,6 +148,7 @@ pub fn json(
             "scene": source::compiled_bytes(&prepared.compiled),
             "lhb": done.lookups.as_ref().map(|built| built.bytes),
             "lhb_read_back": packed.map(|built| built.read_back_bytes),
+            "voxels": voxels.map(|built| built.bytes),
             "film": pixels * size_of::<FilmTexel>() as u64,
             "peak_resident": peak_resident(),
         },

@@ -1,0 +1,59 @@
+//! Knobs of the method voxel.
+
+use clap::Args;
+use twinlight::lattice::MAX_VOXELS;
+use twinlight::methods::voxel::{Cones, Storage, VoxelSettings};
+
+/// Knobs of the method voxel.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Method voxel")]
+pub struct VoxelArgs {
+    /// Voxels along the scene's longest side, 1 to 512
+    #[arg(long, value_name = "N", env = "TWINLIGHT_GRID", default_value_t = VoxelSettings::default().grid,
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_VOXELS)))]
+    pub grid: u32,
+    /// What voxels store of the light that leaves them: iso (a colour), aniso (one per face), sh (spherical harmonics) or sh8 (those in bytes)
+    #[arg(long, value_name = "NAME", env = "TWINLIGHT_STORAGE", default_value_t = VoxelSettings::default().storage, value_parser = storage)]
+    pub storage: Storage,
+    /// Cones that gather diffuse light: 6 (of 60 degrees, a sample per level), or generic:N (N narrower ones, slower and smoother)
+    #[arg(long, value_name = "HOW", env = "TWINLIGHT_CONES", default_value_t = VoxelSettings::default().cones, value_parser = cones)]
+    pub cones: Cones,
+    /// Shadow rays per voxel
+    #[arg(long, value_name = "N", env = "TWINLIGHT_LIGHT_SAMPLES", default_value_t = VoxelSettings::default().light_samples,
+          value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub light_samples: u32,
+}
+
+impl VoxelArgs {
+    /// The flag that asks for what only this method does.
+    pub fn asked_for(&self) -> Option<&'static str> {
+        let usual = VoxelSettings::default();
+        let flags = [
+            ("--grid", self.grid != usual.grid),
+            ("--storage", self.storage != usual.storage),
+            ("--cones", self.cones != usual.cones),
+            ("--light-samples", self.light_samples != usual.light_samples),
+        ];
+        flags.into_iter().find(|(_, is_asked_for)| *is_asked_for).map(|(flag, _)| flag)
+    }
+
+    /// As the method takes them. Light that is scattered without a limit is gathered as often as [`VoxelSettings::default`] says.
+    pub fn settings(&self, bounces: Option<u32>, seed: u32) -> VoxelSettings {
+        VoxelSettings {
+            grid: self.grid,
+            storage: self.storage,
+            cones: self.cones,
+            light_samples: self.light_samples,
+            bounces: bounces.unwrap_or(VoxelSettings::default().bounces),
+            seed,
+        }
+    }
+}
+
+fn storage(text: &str) -> Result<Storage, String> {
+    text.parse().map_err(|e: twinlight::Error| e.to_string())
+}
+
+fn cones(text: &str) -> Result<Cones, String> {
+    text.parse().map_err(|e: twinlight::Error| e.to_string())
+}
