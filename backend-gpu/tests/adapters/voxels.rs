@@ -257,19 +257,20 @@ fn nothing(target: &Target) -> std::result::Result<(), Failed> {
 /// Rectangles through the whole of 512³ voxels, with more cells than a submission has, and segments along its axes and diagonals;
 /// as large triangles, and as small ones of many items.
 fn walls(target: &Target) -> std::result::Result<(), Failed> {
-    const END: i16 = 18_000;
-    let grid = VoxelGrid::over([0; 3], [END; 3], 512)?;
-    let segments =
-        [[[0; 3], [END; 3]], [[0, END, 0], [END, 0, END]], [[0; 3], [END, 0, 0]], [[0; 3], [0, END, 0]]];
-    let rectangle =
-        |z: i16| [[0, 0, z], [END, 0, z], [0, END, z], [0, END, z], [END, 0, z], [END, END, z + 1]];
-    let corners =
-        segments.iter().flat_map(|&[a, b]| [a, b, a]).chain((0..9).flat_map(|i| rectangle(2000 * i)));
-    let mesh = mesh_of(corners.collect());
+    // The corners of a cube of more lattice steps than 512 voxels have units.
+    const L: i16 = -18_000;
+    const H: i16 = 18_000;
+    let grid = VoxelGrid::over([L; 3], [H; 3], 512)?;
+    expect_same("voxels to a side", &grid.dims, &[512; 3])?;
+    let segments = [[[L; 3], [H; 3]], [[L, H, L], [H, L, H]], [[L; 3], [H, L, L]], [[L; 3], [L, H, L]]];
+    let rectangle = |z: i16| [[L, L, z], [H, L, z], [L, H, z], [L, H, z], [H, L, z], [H, H, z - 1]];
+    let lines = segments.iter().flat_map(|&[a, b]| [a, b, a]);
+    let stack = mesh_of(lines.clone().chain((-4..=4).flat_map(|i| rectangle(4000 * i))).collect());
     let gpu = backend(target)?;
-    expect_some(expect_twins_on(&gpu, &mesh, &grid, VoxelizeParams::thin())?)?;
+    expect_some(expect_twins_on(&gpu, &stack, &grid, VoxelizeParams::thin())?)?;
+    let one = mesh_of(lines.chain(rectangle(0)).collect());
     let params = VoxelizeParams { separation: CONSERVATIVE, cutoff: NO_CUTOFF };
-    expect_some(expect_twins_on(&gpu, &mesh, &grid, params)?)
+    expect_some(expect_twins_on(&gpu, &one, &grid, params)?)
 }
 
 /// The sums of voxels whose buffers were changed.
