@@ -48,7 +48,9 @@ pub(crate) fn voxelize(
     let small: Vec<u32> = chunks.iter().flat_map(|classes| &classes.small).copied().collect();
     let large: Vec<u32> = chunks.iter().flat_map(|classes| &classes.large).copied().collect();
     large.par_iter().for_each(|&triangle| call.mark_large(isa, triangle));
+    // [4] rank
     let ranks = lists::ranks(&mask)?;
+    // [5] list
     let active = lists::codes(&mask, &ranks)?;
     let parents = lists::parents(&active);
     let [small, large, mask, ranks, active, parents] =

@@ -28,7 +28,7 @@
 //! (conservative only) are weighed as others are: points, whose Eᵢ are all 0, count as their corner 0.
 //! *Limits.* [`MAX_FRAGMENTS`] fragments per voxel: more are an error, and nothing wraps.
 //! *Errors.* Texels beyond the buffer, and buffers that are no result of `voxelize` with these arguments, are the caller's error: some sums, or an
-//! error; nothing outside the buffers is read.
+//! error; nothing outside the buffers is read. Triangles of the classes that the mesh hasn't are left out.
 //! *Source.* Rauwendaal, voxel cone tracing, which averages as it writes. Deviation: sums, which depend on no order, and end in an
 //! error where an average would saturate.
 

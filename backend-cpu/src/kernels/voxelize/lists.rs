@@ -9,7 +9,6 @@ const WORDS: usize = 1 << 12;
 
 /// Bits set before each word, and in all.
 pub(crate) fn ranks(mask: &[u32]) -> Result<Vec<u32>> {
-    // [4] rank
     let mut ranks = try_zeroed::<u32>(mask.len() + 1)?;
     let counts: Vec<u32> =
         mask.par_chunks(WORDS).map(|words| words.iter().map(|w| w.count_ones()).sum()).collect();
@@ -35,7 +34,6 @@ pub(crate) fn ranks(mask: &[u32]) -> Result<Vec<u32>> {
 
 /// The codes of set bits, ascending.
 pub(crate) fn codes(mask: &[u32], ranks: &[u32]) -> Result<Vec<u32>> {
-    // [5] list
     let mut codes = try_zeroed::<u32>(ranks[mask.len()] as usize)?;
     fill_codes(mask, ranks, &mut codes);
     Ok(codes)
