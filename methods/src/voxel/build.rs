@@ -1,13 +1,11 @@
 //! From a scene to lit voxels on all levels.
 
-use super::cones::voxel_cones;
+use super::light::Lighting;
 use super::{VoxelSettings, bright, surfaces};
 use std::time::{Duration, Instant};
-use twinlight_core::kernels::filter_indirect::RadianceTexel;
 use twinlight_core::kernels::light_voxels::LightVoxelsBlock;
 use twinlight_core::kernels::reduce_mips::{MAX_RADIANCE, ReduceMipsParams, VoxelLevels, VoxelLight};
-use twinlight_core::kernels::sum_voxels::VoxelSums;
-use twinlight_core::kernels::trace_cones::{ConeLight, TraceConesBlock, VoxelFrame};
+use twinlight_core::kernels::trace_cones::{TraceConesBlock, VoxelFrame};
 use twinlight_core::kernels::voxelize::VoxelizeParams;
 use twinlight_core::lattice::{Lattice, LatticeMesh, VoxelGrid};
 use twinlight_core::scene::CompiledScene;
@@ -35,6 +33,15 @@ impl<B: Backend> Lit<B> {
     /// Active voxels of the finest level.
     pub fn voxels(&self) -> u32 {
         self.levels.starts[1]
+    }
+
+    /// Stores the light of voxels on all levels.
+    fn store(&mut self, backend: &B, leaves: &[VoxelLight]) -> Result<()> {
+        let start = Instant::now();
+        let params = ReduceMipsParams { storage: self.call.storage };
+        self.values = backend.reduce_mips(&self.levels, &backend.upload(leaves)?, &params)?;
+        self.reduce_time += start.elapsed();
+        Ok(())
     }
 
     /// Bytes of levels and values.
@@ -88,43 +95,20 @@ pub fn build<B: Backend>(
         light_time: Duration::ZERO,
         reduce_time: Duration::ZERO,
     };
-    let mut gathered = backend.zeroed::<RadianceTexel>(0)?;
-    for bounce in 2..=settings.bounces {
+    let lighting = Lighting { backend, resident, active: &voxels.active, sums: &sums, block: lights };
+    if settings.bounces > 1 {
         let start = Instant::now();
-        if bounce > 2 {
-            gathered = gather_for_voxels(
-                backend,
-                &lit,
-                &backend.download(&sums)?,
-                &backend.download(&voxels.active)?,
-            )?;
-        }
-        let mut leaves = backend.zeroed::<VoxelLight>(backend.len(&voxels.active))?;
-        backend.light_voxels(resident, &voxels.active, &sums, &gathered, &lights, &mut leaves)?;
+        let direct = lighting.direct()?;
         lit.light_time += start.elapsed();
-        let start = Instant::now();
-        let storage = settings.storage.code();
-        lit.values = backend.reduce_mips(&lit.levels, &leaves, &ReduceMipsParams { storage })?;
-        lit.reduce_time += start.elapsed();
+        lit.store(backend, &direct)?;
+        for _ in 2..settings.bounces {
+            let start = Instant::now();
+            let leaves = lighting.scattered(&lit, &direct)?;
+            lit.light_time += start.elapsed();
+            lit.store(backend, &leaves)?;
+        }
     }
     Ok(lit)
-}
-
-/// Irradiance of every voxel, gathered from the light of the pass before.
-fn gather_for_voxels<B: Backend>(
-    backend: &B,
-    lit: &Lit<B>,
-    sums: &[VoxelSums],
-    active: &[u32],
-) -> Result<B::Buffer<RadianceTexel>> {
-    let (cones, flags) = voxel_cones(lit, sums, active);
-    let mut light = backend.zeroed::<ConeLight>(cones.cones.len())?;
-    let call = TraceConesBlock { flags, ..lit.call };
-    backend.trace_cones(&lit.levels, &lit.values, &backend.upload(&cones.cones)?, &call, &mut light)?;
-    let irradiance = cones.sums(&backend.download(&light)?);
-    let texels: Vec<RadianceTexel> =
-        irradiance.into_iter().map(|rgb| RadianceTexel { rgb, padding: 0 }).collect();
-    backend.upload(&texels)
 }
 
 fn bounds(mesh: &LatticeMesh) -> ([i16; 3], [i16; 3]) {

@@ -9,6 +9,7 @@ mod bright;
 mod build;
 mod cones;
 mod gather;
+mod light;
 mod settings;
 mod surfaces;
 

@@ -114,10 +114,10 @@ pub struct VoxelSettings {
 impl Default for VoxelSettings {
     fn default() -> Self {
         Self {
-            grid: 256,
+            grid: 128,
             storage: Storage::default(),
             cones: Cones::Six,
-            light_samples: 16,
+            light_samples: 8,
             bounces: 3,
             seed: 0,
         }
