@@ -8,6 +8,7 @@ mod render;
 mod scene;
 mod signals;
 mod slhb;
+mod voxel;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
