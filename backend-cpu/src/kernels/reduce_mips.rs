@@ -69,11 +69,15 @@ pub(crate) fn voxel_levels(voxels: &Voxels<CpuBackend>) -> Result<VoxelLevels<Cp
     Ok(VoxelLevelBuffers { grid: voxels.grid, starts, mask, ranks, active })
 }
 
-/// A bit for each byte of the level below.
+/// A bit for each byte of the level below, in words that are 0.
 fn reduce_mask(below: &[u32], level: &mut [u32]) {
     let chunks = level.par_chunks_mut(WORDS).zip(below.par_chunks(8 * WORDS));
     chunks.for_each(|(level, below)| {
         for (word, children) in level.iter_mut().zip(below.chunks(8)) {
+            // Most of a grid is empty.
+            if children.iter().fold(0, |all, child| all | child) == 0 {
+                continue;
+            }
             let bits = children.iter().enumerate().map(|(i, child)| filled_bytes(*child) << (4 * i));
             *word = bits.fold(0, |word, bits| word | bits);
         }

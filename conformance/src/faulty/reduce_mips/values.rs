@@ -92,8 +92,8 @@ impl Values<'_> {
 
     fn through_face(&self, children: &Children<'_>, face: usize) -> Value {
         let bit = 1 << (face / 2);
-        let front_bit = if (face % 2 == 0) != (self.fault == Fault::MipsBackFirst) { bit } else { 0 };
-        let mut sums = vec![if self.fault == Fault::MipsColumnsRoundDown { 0 } else { 2 }; 4];
+        let front_bit = if face.is_multiple_of(2) != (self.fault == Fault::MipsBackFirst) { bit } else { 0 };
+        let mut sums = [if self.fault == Fault::MipsColumnsRoundDown { 0 } else { 2 }; 4];
         for octant in (0..8).filter(|octant| octant & bit == front_bit) {
             let word = |octant: usize, w: usize| children[octant].map_or(0, |child| child[4 * face + w]);
             let passes = match self.fault {
