@@ -334,7 +334,7 @@ impl Backend for CpuBackend {
 
     fn voxel_levels(&self, voxels: &Voxels<Self>) -> Result<VoxelLevels<Self>> {
         reduce_mips::check_voxels(voxels, |buffer| buffer.as_slice().len())?;
-        self.run("voxel_levels", || kernels::reduce_mips::voxel_levels(voxels))
+        self.run("voxel_levels", || kernels::reduce_mips::voxel_levels(self.isa, voxels))
     }
 
     fn reduce_mips(

@@ -8,6 +8,7 @@
 
 use crate::buffer::try_zeroed;
 use crate::kernels::voxelize::lists;
+use crate::simd::Isa;
 use crate::{CpuBackend, CpuBuffer};
 use bytemuck::Pod;
 use rayon::prelude::*;
@@ -46,7 +47,7 @@ trait Storage<const W: usize> {
 }
 
 /// The buffers have the lengths that the grid asks for.
-pub(crate) fn voxel_levels(voxels: &Voxels<CpuBackend>) -> Result<VoxelLevels<CpuBackend>> {
+pub(crate) fn voxel_levels(isa: Isa, voxels: &Voxels<CpuBackend>) -> Result<VoxelLevels<CpuBackend>> {
     let firsts = word_starts(voxels.grid.padded());
     let words = firsts[firsts.len() - 1];
     // [1] level masks
@@ -57,7 +58,7 @@ pub(crate) fn voxel_levels(voxels: &Voxels<CpuBackend>) -> Result<VoxelLevels<Cp
         reduce_mask(below, level);
     }
     // [2] rank
-    let ranks = lists::ranks(&mask)?;
+    let ranks = lists::ranks(isa, &mask)?;
     let starts: Vec<u32> = firsts.iter().map(|&word| ranks[word]).collect();
     // [3] list
     let mut active = try_zeroed::<u32>(ranks[words] as usize)?;

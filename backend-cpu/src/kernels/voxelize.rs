@@ -44,12 +44,15 @@ pub(crate) fn voxelize(
     let marks = Marks::new(&mut mask);
     let call = Call { mesh, grid, params, marks: &marks };
     let chunks = (0..mesh.len().div_ceil(RUN * CHUNK)).into_par_iter();
-    let chunks: Vec<Classes> = chunks.map(|chunk| dispatch(isa, Chunk { call, chunk })).collect();
-    let small: Vec<u32> = chunks.iter().flat_map(|classes| &classes.small).copied().collect();
-    let large: Vec<u32> = chunks.iter().flat_map(|classes| &classes.large).copied().collect();
+    let classes = chunks.map(|chunk| {
+        let Classes { small, large } = dispatch(isa, Chunk { call, chunk });
+        (small, large)
+    });
+    let (small, large): (Vec<Vec<u32>>, Vec<Vec<u32>>) = classes.unzip();
+    let (small, large) = (small.concat(), large.concat());
     large.par_iter().for_each(|&triangle| call.mark_large(isa, triangle));
     // [4] rank
-    let ranks = lists::ranks(&mask)?;
+    let ranks = lists::ranks(isa, &mask)?;
     // [5] list
     let active = lists::codes(&mask, &ranks)?;
     let parents = lists::parents(&active);

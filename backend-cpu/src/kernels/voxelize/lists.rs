@@ -1,35 +1,73 @@
-//! From a mask to ranks and lists of codes.
+//! From a mask to ranks and lists of codes. Masks of fine grids are empty nearly everywhere: chunks without a bit are passed over.
 
 use crate::buffer::try_zeroed;
+use crate::simd::{Isa, Kernel, Width, dispatch};
 use rayon::prelude::*;
 use twinlight_core::Result;
 
 /// Words of a mask per task.
 const WORDS: usize = 1 << 12;
 
+/// Codes per task.
+const CODES: usize = 1 << 14;
+
 /// Bits set before each word, and in all.
-pub(crate) fn ranks(mask: &[u32]) -> Result<Vec<u32>> {
+pub(crate) fn ranks(isa: Isa, mask: &[u32]) -> Result<Vec<u32>> {
     let mut ranks = try_zeroed::<u32>(mask.len() + 1)?;
-    let counts: Vec<u32> =
-        mask.par_chunks(WORDS).map(|words| words.iter().map(|w| w.count_ones()).sum()).collect();
+    let counts: Vec<u32> = mask.par_chunks(WORDS).map(|words| dispatch(isa, Count { words })).collect();
     let mut before = 0;
-    let starts: Vec<u32> = counts
-        .iter()
-        .map(|count| {
-            let start = before;
-            before += count;
-            start
-        })
-        .collect();
-    let chunks = ranks[1..].par_chunks_mut(WORDS).zip(mask.par_chunks(WORDS)).zip(&starts);
-    chunks.for_each(|((ranks, words), &start)| {
-        let mut sum = start;
-        for (rank, word) in ranks.iter_mut().zip(words) {
-            sum += word.count_ones();
-            *rank = sum;
+    let mut starts = Vec::with_capacity(counts.len());
+    for count in &counts {
+        starts.push(before);
+        before += count;
+    }
+    let chunks = ranks[1..].par_chunks_mut(WORDS).zip(mask.par_chunks(WORDS)).zip(&counts).zip(&starts);
+    chunks.for_each(|(((ranks, words), &count), &before)| {
+        if count == 0 {
+            ranks.fill(before);
+        } else {
+            dispatch(isa, Rank { words, ranks, before });
         }
     });
     Ok(ranks)
+}
+
+/// Bits of some words.
+struct Count<'a> {
+    words: &'a [u32],
+}
+
+impl Kernel for Count<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<W: Width>(self, _: W) -> u32 {
+        let mut sum = 0;
+        for word in self.words {
+            sum += word.count_ones();
+        }
+        sum
+    }
+}
+
+/// The ranks behind some words.
+struct Rank<'a> {
+    words: &'a [u32],
+    ranks: &'a mut [u32],
+    before: u32,
+}
+
+impl Kernel for Rank<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<W: Width>(self, _: W) {
+        let mut sum = self.before;
+        for (rank, word) in self.ranks.iter_mut().zip(self.words) {
+            sum += word.count_ones();
+            *rank = sum;
+        }
+    }
 }
 
 /// The codes of set bits, ascending.
@@ -46,7 +84,9 @@ pub(crate) fn fill_codes(mask: &[u32], ranks: &[u32], codes: &mut [u32]) {
     for begin in (0..mask.len()).step_by(WORDS) {
         let end = mask.len().min(begin + WORDS);
         let part = rest.split_off_mut(..(ranks[end] - ranks[begin]) as usize).unwrap_or_default();
-        parts.push((begin, &mask[begin..end], part));
+        if !part.is_empty() {
+            parts.push((begin, &mask[begin..end], part));
+        }
     }
     parts.into_par_iter().for_each(|(begin, words, part)| {
         let mut places = part.iter_mut();
@@ -64,7 +104,22 @@ pub(crate) fn fill_codes(mask: &[u32], ranks: &[u32], codes: &mut [u32]) {
 
 /// The codes of the next level.
 pub(crate) fn parents(active: &[u32]) -> Vec<u32> {
-    let mut parents: Vec<u32> = active.iter().map(|code| code >> 3).collect();
-    parents.dedup();
-    parents
+    let chunks: Vec<Vec<u32>> = (0..active.len().div_ceil(CODES))
+        .into_par_iter()
+        .map(|chunk| {
+            let begin = chunk * CODES;
+            // A parent that began in the chunk before is listed there.
+            let mut last = begin.checked_sub(1).map(|i| active[i] >> 3);
+            let mut parents = Vec::with_capacity(CODES / 2);
+            for code in &active[begin..active.len().min(begin + CODES)] {
+                let parent = Some(code >> 3);
+                if parent != last {
+                    parents.extend(parent);
+                    last = parent;
+                }
+            }
+            parents
+        })
+        .collect();
+    chunks.concat()
 }
