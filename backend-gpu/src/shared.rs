@@ -18,6 +18,8 @@ macro_rules! shared {
 shared! {
     /// Twin of `transport::bsdf`.
     BSDF = "bsdf";
+    /// Twin of `transport::cone`; wants `shared/morton.wgsl`, and the structs and bindings of `trace_cones`.
+    CONE = "cone";
     /// Dispatches of any size, loops that end early.
     DISPATCH = "dispatch";
     /// Twin of `transport::environment`; wants `params.environment`.
@@ -36,6 +38,8 @@ shared! {
     LIGHT = "light";
     /// What a lookup in layered hit buffers meets, and the bindings of them; wants `params.lhb`.
     LOOK_UP = "look_up";
+    /// Twin of `math::morton`.
+    MORTON = "morton";
     /// Twin of `math::octahedral`; wants a global `nearest_map: array<u32>`.
     OCTAHEDRAL = "octahedral";
     /// Twin of `transport::offset`.

@@ -11,5 +11,6 @@ pub mod scan;
 pub mod shade_primary;
 pub mod sort;
 pub mod trace;
+pub mod trace_cones;
 pub mod trace_paths;
 pub mod walk_lhb;

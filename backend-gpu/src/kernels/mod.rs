@@ -15,6 +15,7 @@ pub mod shade_primary;
 pub mod sort;
 mod status;
 pub mod trace;
+pub mod trace_cones;
 pub mod trace_paths;
 pub mod walk_lhb;
 
@@ -34,4 +35,5 @@ pub const ALL: &[&KernelSource] = &[
     &walk_lhb::SOURCE,
     &filter_indirect::SOURCE,
     &reduce_mips::SOURCE,
+    &trace_cones::SOURCE,
 ];
