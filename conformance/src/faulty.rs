@@ -9,6 +9,7 @@ mod scan;
 mod shade_primary;
 mod sort;
 mod trace;
+mod trace_cones;
 mod trace_paths;
 mod walk_lhb;
 
@@ -250,6 +251,6 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &TraceConesBlock,
         light: &mut B::Buffer<ConeLight>,
     ) -> Result<()> {
-        self.inner.trace_cones(levels, values, cones, params, light)
+        trace_cones::trace_cones(self.inner, self.fault, levels, values, cones, params, light)
     }
 }

@@ -10,6 +10,7 @@ pub mod scan;
 pub mod shade_primary;
 pub mod sort;
 pub mod trace;
+pub mod trace_cones;
 pub mod trace_paths;
 pub mod walk_lhb;
 
@@ -17,7 +18,7 @@ use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 11] = [
+pub const STEMS: [&str; 12] = [
     "scan",
     "sort",
     "rasterize_lhb",
@@ -29,6 +30,7 @@ pub const STEMS: [&str; 11] = [
     "trace_paths",
     "walk_lhb",
     "filter_indirect",
+    "trace_cones",
 ];
 
 /// Lists every kernel's trials.
@@ -44,6 +46,7 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     trace_paths::list(list);
     walk_lhb::list(list);
     filter_indirect::list(list);
+    trace_cones::list(list);
 }
 
 /// Bit equality is promised where float results are those of IEEE 754 evaluated as written.
