@@ -120,7 +120,7 @@ fn undecided(lit: &Lit, block: &TraceConesBlock, cones: &[Cone]) -> usize {
 }
 
 /// Fails unless `found` has the bits of `want`.
-fn same(what: &str, found: &[ConeLight], want: &[ConeLight]) -> Check {
+pub(crate) fn same(what: &str, found: &[ConeLight], want: &[ConeLight]) -> Check {
     let bits = |light: &ConeLight| (light.rgb.map(f32::to_bits), light.transmittance.to_bits());
     let differs = found.iter().zip(want).position(|(found, want)| bits(found) != bits(want));
     ensure(found.len() == want.len() && differs.is_none(), || {
