@@ -66,7 +66,10 @@ fn beyond_their_limits<B: Backend>(cx: &Context<'_, B>) -> Check {
 
 /// Words of `count` values.
 fn made_up(random: &mut Random, storage: u32, count: usize) -> Vec<u32> {
-    let opacity = |random: &mut Random| random.index(4 << random.index(17)) as u32;
+    let opacity = |random: &mut Random| {
+        let bits = random.index(17);
+        random.index(4 << bits) as u32
+    };
     let light = |random: &mut Random| random.index(5000) as u32;
     let signed = |random: &mut Random| (random.index(10_000) as i32 - 5000) as u32;
     let mut values = Vec::new();
