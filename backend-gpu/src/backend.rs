@@ -4,7 +4,7 @@ use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
 use crate::kernels::{
     filter_indirect, merge_lhb, pack_lhb, query_lhb, rasterize_lhb, reduce_mips, scan, shade_primary, sort,
-    sum_voxels, trace, trace_paths, voxelize, walk_lhb,
+    sum_voxels, trace, trace_cones, trace_paths, voxelize, walk_lhb,
 };
 use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
@@ -241,12 +241,12 @@ impl Backend for GpuBackend {
 
     fn trace_cones(
         &self,
-        _: &VoxelLevels<Self>,
-        _: &GpuBuffer<u32>,
-        _: &GpuBuffer<Cone>,
-        _: &TraceConesBlock,
-        _: &mut GpuBuffer<ConeLight>,
+        levels: &VoxelLevels<Self>,
+        values: &GpuBuffer<u32>,
+        cones: &GpuBuffer<Cone>,
+        params: &TraceConesBlock,
+        light: &mut GpuBuffer<ConeLight>,
     ) -> Result<()> {
-        Err(twinlight_core::Error::Internal("trace_cones: not there yet".into()))
+        trace_cones::run(&self.device, levels, values, cones, params, light)
     }
 }

@@ -18,6 +18,8 @@ macro_rules! shared {
 shared! {
     /// Twin of `transport::bsdf`.
     BSDF = "bsdf";
+    /// Twin of `transport::cone`; wants `shared/morton.wgsl`, and the structs and bindings of `trace_cones`.
+    CONE = "cone";
     /// Dispatches of any size, loops that end early.
     DISPATCH = "dispatch";
     /// Twin of `transport::environment`; wants `params.environment`.

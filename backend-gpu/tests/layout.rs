@@ -7,14 +7,15 @@ use std::mem::{offset_of, size_of};
 use twinlight_backend_gpu::kernels::voxelize::items;
 use twinlight_backend_gpu::kernels::{
     self, filter_indirect, merge_lhb, pack_lhb, path, query_lhb, rasterize_lhb, reduce_mips, scan,
-    shade_primary, sort, sum_voxels, trace, trace_paths, voxelize, walk_lhb,
+    shade_primary, sort, sum_voxels, trace, trace_cones, trace_paths, voxelize, walk_lhb,
 };
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
     filter_indirect as filter_contract, merge_lhb as merge_contract, pack_lhb as pack_contract,
     query_lhb as query_contract, rasterize_lhb as lhb_contract, reduce_mips as mips_contract,
     shade_primary as shade_contract, sum_voxels as sums_contract, trace as trace_contract,
-    trace_paths as paths_contract, voxelize as voxel_contract, walk_lhb as walk_contract,
+    trace_cones as cones_contract, trace_paths as paths_contract, voxelize as voxel_contract,
+    walk_lhb as walk_contract,
 };
 use twinlight_core::transport::{intersect, lhb, light};
 use twinlight_core::{bvh, lattice, math, scene, transport};
@@ -404,6 +405,37 @@ fn twins() -> Vec<Twins> {
                 ("NONE", sums_contract::NONE.into()),
                 ("CLAMP", sums_contract::CLAMP.into()),
             ]),
+        },
+        Twins {
+            source: &trace_cones::SOURCE,
+            structs: vec![
+                layout!(trace_cones::TraceConesCall {
+                    call,
+                    dims,
+                    level_count,
+                    word_starts,
+                    value_words,
+                    cone_count,
+                    padding,
+                }),
+                layout!(cones_contract::TraceConesBlock { frame, unit, reach, storage, flags }),
+                layout!(cones_contract::VoxelFrame { corner, voxels_per_unit }),
+                layout!(cones_contract::Cone { origin, sine, direction, start, normal, padding }),
+                layout!(cones_contract::ConeLight { rgb, transmittance }),
+            ],
+            constants: vec![
+                ("WORKGROUP_SIZE", trace_cones::WORKGROUP_SIZE.into()),
+                ("ISOTROPIC", mips_contract::ISOTROPIC.into()),
+                ("ANISOTROPIC", mips_contract::ANISOTROPIC.into()),
+                ("HARMONICS", mips_contract::HARMONICS.into()),
+                ("HARMONICS_8", mips_contract::HARMONICS_8.into()),
+                ("OPAQUE", mips_contract::OPAQUE.into()),
+                ("MAX_SINE", cones_contract::MAX_SINE.into()),
+                ("MAX_STEPS", cones_contract::MAX_STEPS.into()),
+                ("PLANE_MARGIN", cones_contract::PLANE_MARGIN.into()),
+                ("LEAST_TRANSMITTANCE", cones_contract::LEAST_TRANSMITTANCE.into()),
+                ("SIXTY_DEGREES", cones_contract::SIXTY_DEGREES.into()),
+            ],
         },
     ]
 }

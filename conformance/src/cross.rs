@@ -7,6 +7,7 @@ use crate::kernels::filter_indirect::{filtered_over, inputs, within_intervals};
 use crate::kernels::query_lhb::scattered;
 use crate::kernels::reduce_mips::{all_of, inputs::surfaces};
 use crate::kernels::sum_voxels::some_surfaces;
+use crate::kernels::trace_cones as cone_trials;
 use crate::kernels::trace_paths::{params, traced};
 use crate::kernels::voxelize::over;
 use crate::kernels::walk_lhb::{Prepared, walked};
@@ -47,6 +48,7 @@ pub fn checks<A: Backend, B: Backend>() -> Vec<(&'static str, CrossCheck<A, B>)>
         ("reduce_mips", mips),
         ("voxelize", voxels),
         ("sum_voxels", sums),
+        ("trace_cones", cones),
     ]
 }
 
@@ -83,6 +85,22 @@ fn context<'a, B>(backend: &'a B, options: &'a Options, name: &'a str) -> Contex
 fn four_views() -> twinlight_core::Result<Vec<View>> {
     let directions = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.3, -0.8, 0.5], [-0.6, 0.2, 0.7]];
     directions.map(|d| View::along(d.into(), 48)).into_iter().collect()
+}
+
+/// Cones through made-up voxels of every storage.
+fn cones<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    for storage in cone_trials::STORAGES {
+        let mut random = Random::new(u64::from(storage));
+        let (lit, block, cones) = cone_trials::inputs::some_call(&mut random, storage);
+        let got = cone_trials::traced(b, &lit, &block, &cones)?;
+        let check = if both_strict(a, b) {
+            cone_trials::same("light", &got, &cone_trials::traced(a, &lit, &block, &cones)?)
+        } else {
+            cone_trials::possible_light(&lit, &block, &cones, &got)
+        };
+        check.map_err(|f| f.within(&format!("storage {storage}")))?;
+    }
+    Ok(())
 }
 
 /// Layered hit buffers from four directions, in 48² pixels: integers, so the same bits in every mode.

@@ -11,6 +11,7 @@ mod shade_primary;
 mod sort;
 mod sum_voxels;
 mod trace;
+mod trace_cones;
 mod trace_paths;
 mod voxelize;
 mod walk_lhb;
@@ -253,6 +254,6 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &TraceConesBlock,
         light: &mut B::Buffer<ConeLight>,
     ) -> Result<()> {
-        self.inner.trace_cones(levels, values, cones, params, light)
+        trace_cones::trace_cones(self.inner, self.fault, levels, values, cones, params, light)
     }
 }

@@ -12,6 +12,7 @@ pub mod shade_primary;
 pub mod sort;
 pub mod sum_voxels;
 pub mod trace;
+pub mod trace_cones;
 pub mod trace_paths;
 pub mod voxelize;
 pub mod walk_lhb;
@@ -20,7 +21,7 @@ use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 14] = [
+pub const STEMS: [&str; 15] = [
     "scan",
     "sort",
     "rasterize_lhb",
@@ -35,6 +36,7 @@ pub const STEMS: [&str; 14] = [
     "reduce_mips",
     "voxelize",
     "sum_voxels",
+    "trace_cones",
 ];
 
 /// Lists every kernel's trials.
@@ -53,6 +55,7 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     reduce_mips::list(list);
     voxelize::list(list);
     sum_voxels::list(list);
+    trace_cones::list(list);
 }
 
 /// Bit equality is promised where float results are those of IEEE 754 evaluated as written.

@@ -12,6 +12,7 @@ pub mod shade_primary;
 pub mod sort;
 pub mod sum_voxels;
 pub mod trace;
+pub mod trace_cones;
 pub mod trace_paths;
 pub mod voxelize;
 pub mod walk_lhb;

@@ -16,6 +16,7 @@ pub mod sort;
 mod status;
 pub mod sum_voxels;
 pub mod trace;
+pub mod trace_cones;
 pub mod trace_paths;
 pub mod voxelize;
 pub mod walk_lhb;
@@ -38,4 +39,5 @@ pub const ALL: &[&KernelSource] = &[
     &reduce_mips::SOURCE,
     &voxelize::SOURCE,
     &sum_voxels::SOURCE,
+    &trace_cones::SOURCE,
 ];

@@ -3,6 +3,7 @@
 //! `TWINLIGHT_REQUIRE_GPU=1` turns a machine without adapters from a skip into a failure.
 
 mod chunks;
+mod cones;
 mod device;
 mod filters;
 mod frames;
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let checks: Vec<(&str, Check)> = [
         chunks::CHECKS,
+        cones::CHECKS,
         device::CHECKS,
         filters::CHECKS,
         frames::CHECKS,

@@ -11,18 +11,19 @@
 //!
 //! *Meaning.* All of it in f32, in the order written; a·b·c is (a·b)·c. Lengths below are in voxels.
 //! 1. *Place.* P = (`origin` − [`VoxelFrame::corner`]) · [`VoxelFrame::voxels_per_unit`], d = `start` · `voxels_per_unit`, s = `sine`, brought into
-//!    [0, [`MAX_SINE`]].
+//!    [0, [`MAX_SINE`]]; what is no number counts as 0.
 //! 2. *March.* A sphere of radius r rolls along the axis, each touching the one before: r = max(d·s, ½); it is sampled at p = P + d·`direction`
 //!    with the width w = 2r; then d becomes max(d + 2r, (d + r)/(1 − s)). With [`SIXTY_DEGREES`], s is not read: d is first the least power of two
 //!    that is at least max(d, 1), r = d/2, and d doubles: every sample is on a level, and costs half.
 //! 3. *End.* At [`MAX_STEPS`] samples; when p leaves the grid, that is a coordinate is below 0 or above the number of voxels, or is no number; when
-//!    d > `reach` · `voxels_per_unit`; when at most [`LEAST_TRANSMITTANCE`] is left.
+//!    d is not at most `reach` · `voxels_per_unit`; when at most [`LEAST_TRANSMITTANCE`] is left.
 //! 4. *Level.* w ≥ 1 is m·2ˡ with 1 ≤ m < 2. Its sample is (1 − f)·S(l) + f·S(l + 1) with f = m − 1, where f > 0 and l is not the last level; from the last
 //!    level on it is that of the last.
-//! 5. *Filter.* S(l): q = p·2⁻ˡ − ½, i = ⌊q⌋, g = q − i; the eight voxels i, i + 1 of level l, brought into the level's numbers of voxels, weigh
+//! 5. *Filter.* S(l): q = p·2⁻ˡ − ½, i = ⌊q⌋, g = q − i; the eight voxels i, i + 1 of level l, brought into the ⌈n·2⁻ˡ⌉ voxels that the level has along an axis of n, weigh
 //!    (1 − g) and g per axis, the products x·y·z. The sum runs over x first, then y, then z. A voxel that is not active is zero. With a `normal` n, voxels
-//!    count only in front of the surface: their centre is higher above the plane through P than half of what they span along n, 2ˡ·½·(|nₓ|+|n_y|+|n_z|), and
-//!    [`PLANE_MARGIN`]; S(l) is the sum divided by that of the weights that count, and zero where none does.
+//!    count only in front of the surface: their centre C is higher above the plane through P, n·C − n·P, than half of what they span along n,
+//!    ½·(|nₓ|+|n_y|+|n_z|)·2ˡ, and [`PLANE_MARGIN`]. S(l) is the sum times 1 / the sum of the weights that count (which is near 1 where all do), and zero
+//!    where that is not above zero.
 //! 6. *Value.* What leaves a voxel against the cone's direction ω, (rgb, opacity) as f32 of its integers: isotropic as they are; anisotropic
 //!    Σ over the axes of ω²·face, the face being the one that ω comes in by: + where ω < 0, else −; harmonics
 //!    max(a₀ − ((aₓωₓ + a_yω_y) + a_zω_z), 0) per channel; in 8 bits the same of q times 2ᵉ. But for anisotropic ones, whose opacity
