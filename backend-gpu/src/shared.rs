@@ -36,6 +36,8 @@ shared! {
     LIGHT = "light";
     /// What a lookup in layered hit buffers meets, and the bindings of them; wants `params.lhb`.
     LOOK_UP = "look_up";
+    /// Twin of `math::morton`.
+    MORTON = "morton";
     /// Twin of `math::octahedral`; wants a global `nearest_map: array<u32>`.
     OCTAHEDRAL = "octahedral";
     /// Twin of `transport::offset`.
@@ -58,6 +60,8 @@ shared! {
     TRIG = "trig";
     /// Twin of `math::vector`.
     VECTOR = "vector";
+    /// Twin of `transport::voxel_light`; wants `params.call` and `params.environment`.
+    VOXEL_LIGHT = "voxel_light";
     /// 64-bit integers, which Rust has and WGSL hasn't.
     WIDE = "wide";
 }

@@ -4,6 +4,7 @@
 //! `backend.rs`. The tests `sources` and `layout` find it through [`ALL`].
 
 pub mod filter_indirect;
+pub mod light_voxels;
 pub mod merge_lhb;
 pub mod pack_lhb;
 pub mod path;
@@ -34,4 +35,5 @@ pub const ALL: &[&KernelSource] = &[
     &walk_lhb::SOURCE,
     &filter_indirect::SOURCE,
     &reduce_mips::SOURCE,
+    &light_voxels::SOURCE,
 ];

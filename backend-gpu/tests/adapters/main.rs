@@ -14,6 +14,7 @@ mod scan;
 mod sort;
 mod strict;
 mod transport;
+mod voxel_lights;
 mod walks;
 mod wide;
 
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
         sort::CHECKS,
         strict::CHECKS,
         transport::CHECKS,
+        voxel_lights::CHECKS,
         walks::CHECKS,
         wide::CHECKS,
     ]
