@@ -1,6 +1,7 @@
 //! Cases and laws of every kernel, in pipeline order.
 
 pub mod filter_indirect;
+pub mod light_voxels;
 pub mod merge_lhb;
 pub mod pack_lhb;
 mod property;
@@ -17,7 +18,7 @@ use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 11] = [
+pub const STEMS: [&str; 12] = [
     "scan",
     "sort",
     "rasterize_lhb",
@@ -29,6 +30,7 @@ pub const STEMS: [&str; 11] = [
     "trace_paths",
     "walk_lhb",
     "filter_indirect",
+    "light_voxels",
 ];
 
 /// Lists every kernel's trials.
@@ -44,6 +46,7 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     trace_paths::list(list);
     walk_lhb::list(list);
     filter_indirect::list(list);
+    light_voxels::list(list);
 }
 
 /// Bit equality is promised where float results are those of IEEE 754 evaluated as written.

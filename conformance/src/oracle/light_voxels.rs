@@ -154,11 +154,11 @@ pub fn leaf(scene: &CompiledScene, block: &LightVoxelsBlock, voxel: &Voxel) -> V
         return VoxelLight::default();
     }
     let value = expected(scene, block, voxel).value;
-    VoxelLight { rgb: value.to_array().map(rounded), opacity: OPAQUE }
+    VoxelLight { rgb: value.to_array().map(units), opacity: OPAQUE }
 }
 
 /// To the nearest integer, halves up, in 0 to [`MAX_RADIANCE`]; 0 for what is no number.
-fn rounded(value: f64) -> u32 {
+pub fn units(value: f64) -> u32 {
     if value > 0.0 { (value + 0.5).floor().min(f64::from(MAX_RADIANCE)) as u32 } else { 0 }
 }
 
