@@ -1,17 +1,16 @@
 //! Lights with an extent: means over many seeds against the oracle's integrals.
 
-use super::inputs::{block, of_scene, voxel, within};
+use super::inputs::{exact_lights, of_scene, voxel, within};
 use super::rooms::cornell;
 use super::{Case, ROUNDING, lit_in};
 use crate::oracle::light_voxels::{Voxel, expected};
-use crate::scenes::{compiled, scene_of};
+use crate::scenes::scene_of;
 use crate::trial::{Check, Context, Listing, ensure, list_trials};
 use glam::DVec3;
 use twinlight_core::Backend;
 use twinlight_core::kernels::light_voxels::LightVoxelsBlock;
 use twinlight_core::scene::{Environment, Light};
 use twinlight_fixtures::meshes::{cube, placed};
-use twinlight_fixtures::scenes;
 
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "light_voxels":
@@ -124,13 +123,17 @@ fn mean_under_a_sky<B: Backend>(cx: &Context<'_, B>) -> Check {
 
 /// All that there are, at once.
 fn mean_of_all_kinds<B: Backend>(cx: &Context<'_, B>) -> Check {
-    let scene = compiled(&scenes::lights());
-    let mut block = LightVoxelsBlock { samples: 64, ..block() };
-    block.frame.voxels_per_unit = 0.8;
-    block.frame.corner = [0, 1, 2].map(|axis| [-5.0, -0.6, -5.0][axis] - scene.origin[axis] as f32);
-    let places = [[1, 0, 3], [2, 0, 4], [4, 0, 4], [5, 0, 3], [7, 1, 4], [3, 0, 6]];
-    let voxels = places.iter().map(|at| voxel(*at, [1, 9, 2])).collect();
-    agrees(cx, &Case { scene, block, voxels })
+    let mut scene = scene_of(placed(cube(), 0.3, DVec3::new(0.1, 0.4, 0.3)));
+    scene.lights = exact_lights().map(|(_, light)| light).into();
+    scene.lights.push(Light::Sphere { center: [-0.6, 1.7, 0.2], radius: 0.4, radiance: [5.0, 1.0, 7.0] });
+    scene.lights.push(Light::Rectangle {
+        corner: [-1.0, -2.5, -1.0],
+        edge_u: [0.0, 0.0, 2.0],
+        edge_v: [2.0, 0.0, 0.0],
+        radiance: [2.0, 1.0, 3.0],
+    });
+    scene.environment = Some(Environment::constant([0.5, 0.75, 1.0]));
+    agrees(cx, &of_scene(&scene, some_voxels()).with(|block| block.samples = 96))
 }
 
 /// Voxels of the room's own surfaces, under its light.

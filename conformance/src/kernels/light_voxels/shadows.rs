@@ -60,7 +60,8 @@ fn a_sphere_shadows<B: Backend>(cx: &Context<'_, B>) -> Check {
     for light in [point([0.2, 3.0, 0.15]), sun([0.05, -1.0, 0.05])] {
         for (y, want) in [(1.5, false), (-1.5, true)] {
             let voxels = vec![voxel([4; 3], [0, 9, 0]), voxel([4; 3], [0; 3])];
-            let case = within(Vec::new(), vec![light, ball(y)], voxels);
+            // Lights are chosen by their power, and the sun's is that on a scene's meshes.
+            let case = within(vec![plate(-4.0, 2.0)], vec![light, ball(y)], voxels);
             // Enough samples that the other light is among the chosen.
             let leaves = case.with(|block| block.samples = 64).lit(cx)?;
             let lit: Vec<bool> = leaves.iter().map(|leaf| leaf.rgb[0] > 0).collect();
