@@ -3,8 +3,8 @@
 use crate::buffer::GpuBuffer;
 use crate::device::{DeviceOptions, GpuDevice};
 use crate::kernels::{
-    filter_indirect, merge_lhb, pack_lhb, query_lhb, rasterize_lhb, reduce_mips, scan, shade_primary, sort,
-    sum_voxels, trace, trace_cones, trace_paths, voxelize, walk_lhb,
+    filter_indirect, light_voxels, merge_lhb, pack_lhb, query_lhb, rasterize_lhb, reduce_mips, scan,
+    shade_primary, sort, sum_voxels, trace, trace_cones, trace_paths, voxelize, walk_lhb,
 };
 use crate::mesh::GpuMesh;
 use crate::scene::GpuScene;
@@ -229,14 +229,14 @@ impl Backend for GpuBackend {
 
     fn light_voxels(
         &self,
-        _: &GpuScene,
-        _: &GpuBuffer<u32>,
-        _: &GpuBuffer<VoxelSums>,
-        _: &GpuBuffer<RadianceTexel>,
-        _: &LightVoxelsBlock,
-        _: &mut GpuBuffer<VoxelLight>,
+        scene: &GpuScene,
+        active: &GpuBuffer<u32>,
+        sums: &GpuBuffer<VoxelSums>,
+        gathered: &GpuBuffer<RadianceTexel>,
+        params: &LightVoxelsBlock,
+        leaves: &mut GpuBuffer<VoxelLight>,
     ) -> Result<()> {
-        Err(twinlight_core::Error::Internal("light_voxels: not there yet".into()))
+        light_voxels::run(&self.device, scene, active, sums, gathered, params, leaves)
     }
 
     fn trace_cones(

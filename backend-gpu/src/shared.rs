@@ -68,6 +68,8 @@ shared! {
     VOXEL = "voxel";
     /// Triangles cut into items, and the bindings of them; wants `shared/voxel.wgsl` and `params.items`.
     VOXEL_ITEMS = "voxel_items";
+    /// Twin of `transport::voxel_light`; wants `params.call` and `params.environment`.
+    VOXEL_LIGHT = "voxel_light";
     /// 64-bit integers, which Rust has and WGSL hasn't.
     WIDE = "wide";
 }

@@ -6,16 +6,16 @@
 use std::mem::{offset_of, size_of};
 use twinlight_backend_gpu::kernels::voxelize::items;
 use twinlight_backend_gpu::kernels::{
-    self, filter_indirect, merge_lhb, pack_lhb, path, query_lhb, rasterize_lhb, reduce_mips, scan,
-    shade_primary, sort, sum_voxels, trace, trace_cones, trace_paths, voxelize, walk_lhb,
+    self, filter_indirect, light_voxels, merge_lhb, pack_lhb, path, query_lhb, rasterize_lhb, reduce_mips,
+    scan, shade_primary, sort, sum_voxels, trace, trace_cones, trace_paths, voxelize, walk_lhb,
 };
 use twinlight_backend_gpu::source::{CheckedModule, KernelSource, WgslFile};
 use twinlight_core::kernels::{
-    filter_indirect as filter_contract, merge_lhb as merge_contract, pack_lhb as pack_contract,
-    query_lhb as query_contract, rasterize_lhb as lhb_contract, reduce_mips as mips_contract,
-    shade_primary as shade_contract, sum_voxels as sums_contract, trace as trace_contract,
-    trace_cones as cones_contract, trace_paths as paths_contract, voxelize as voxel_contract,
-    walk_lhb as walk_contract,
+    filter_indirect as filter_contract, light_voxels as lights_contract, merge_lhb as merge_contract,
+    pack_lhb as pack_contract, query_lhb as query_contract, rasterize_lhb as lhb_contract,
+    reduce_mips as mips_contract, shade_primary as shade_contract, sum_voxels as sums_contract,
+    trace as trace_contract, trace_cones as cones_contract, trace_paths as paths_contract,
+    voxelize as voxel_contract, walk_lhb as walk_contract,
 };
 use twinlight_core::transport::{intersect, lhb, light};
 use twinlight_core::{bvh, lattice, math, scene, transport};
@@ -436,6 +436,34 @@ fn twins() -> Vec<Twins> {
                 ("LEAST_TRANSMITTANCE", cones_contract::LEAST_TRANSMITTANCE.into()),
                 ("SIXTY_DEGREES", cones_contract::SIXTY_DEGREES.into()),
             ],
+        },
+        Twins {
+            source: &light_voxels::SOURCE,
+            structs: with_scene(vec![
+                layout!(light_voxels::LightVoxelsParams {
+                    call,
+                    environment,
+                    voxel_count,
+                    sample_begin,
+                    sample_end,
+                    is_lit,
+                    has_gathered,
+                    loop_rounds,
+                    padding,
+                }),
+                layout!(lights_contract::LightVoxelsBlock { frame, seed, samples, scale, emission_unit }),
+                layout!(cones_contract::VoxelFrame { corner, voxels_per_unit }),
+                layout!(sums_contract::VoxelSums { albedo, count, normal, padding, emission, padding_too }),
+                layout!(filter_contract::RadianceTexel { rgb, padding }),
+                layout!(mips_contract::VoxelLight { rgb, opacity }),
+            ]),
+            constants: with_lights(vec![
+                ("WORKGROUP_SIZE", light_voxels::WORKGROUP_SIZE.into()),
+                ("LIFT", lights_contract::LIFT.into()),
+                ("MAX_RADIANCE", mips_contract::MAX_RADIANCE.into()),
+                ("OPAQUE", mips_contract::OPAQUE.into()),
+                ("INV_PI", transport::INV_PI.into()),
+            ]),
         },
     ]
 }

@@ -1,6 +1,7 @@
 //! A backend with one planted bug: everything goes through to a sound backend, and one result comes back wrong.
 
 mod filter_indirect;
+mod light_voxels;
 mod merge_lhb;
 mod pack_lhb;
 mod query_lhb;
@@ -243,7 +244,8 @@ impl<B: Backend> Backend for Faulty<'_, B> {
         params: &LightVoxelsBlock,
         leaves: &mut B::Buffer<VoxelLight>,
     ) -> Result<()> {
-        self.inner.light_voxels(&scene.inner, active, sums, gathered, params, leaves)
+        let voxels = light_voxels::Voxels { active, sums, gathered };
+        light_voxels::light_voxels(self.inner, self.fault, scene, voxels, params, leaves)
     }
 
     fn trace_cones(

@@ -1,6 +1,7 @@
 //! Cases and laws of every kernel, in pipeline order.
 
 pub mod filter_indirect;
+pub mod light_voxels;
 pub mod merge_lhb;
 pub mod pack_lhb;
 mod property;
@@ -21,7 +22,7 @@ use crate::trial::{Check, Context, Failure, Listing};
 use twinlight_core::Backend;
 
 /// Stems of the kernels the suite knows, in pipeline order.
-pub const STEMS: [&str; 15] = [
+pub const STEMS: [&str; 16] = [
     "scan",
     "sort",
     "rasterize_lhb",
@@ -37,6 +38,7 @@ pub const STEMS: [&str; 15] = [
     "voxelize",
     "sum_voxels",
     "trace_cones",
+    "light_voxels",
 ];
 
 /// Lists every kernel's trials.
@@ -56,6 +58,7 @@ pub fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     voxelize::list(list);
     sum_voxels::list(list);
     trace_cones::list(list);
+    light_voxels::list(list);
 }
 
 /// Bit equality is promised where float results are those of IEEE 754 evaluated as written.

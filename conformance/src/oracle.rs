@@ -2,6 +2,7 @@
 //! so that a misreading both twins share still shows.
 
 pub mod filter_indirect;
+pub mod light_voxels;
 pub mod merge_lhb;
 pub mod pack_lhb;
 pub mod query_lhb;

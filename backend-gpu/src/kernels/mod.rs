@@ -4,6 +4,7 @@
 //! `backend.rs`. The tests `sources` and `layout` find it through [`ALL`].
 
 pub mod filter_indirect;
+pub mod light_voxels;
 pub mod merge_lhb;
 pub mod pack_lhb;
 pub mod path;
@@ -40,4 +41,5 @@ pub const ALL: &[&KernelSource] = &[
     &voxelize::SOURCE,
     &sum_voxels::SOURCE,
     &trace_cones::SOURCE,
+    &light_voxels::SOURCE,
 ];

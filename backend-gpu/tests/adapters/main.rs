@@ -16,6 +16,7 @@ mod scan;
 mod sort;
 mod strict;
 mod transport;
+mod voxel_lights;
 mod voxels;
 mod walks;
 mod wide;
@@ -59,6 +60,7 @@ fn main() -> ExitCode {
         strict::CHECKS,
         transport::CHECKS,
         voxels::CHECKS,
+        voxel_lights::CHECKS,
         walks::CHECKS,
         wide::CHECKS,
     ]

@@ -3,6 +3,7 @@
 use bytemuck::Pod;
 use twinlight_core::kernels::filter_indirect::RadianceTexel;
 use twinlight_core::kernels::rasterize_lhb::LhbElement;
+use twinlight_core::kernels::reduce_mips::VoxelLight;
 use twinlight_core::kernels::shade_primary::GBufferTexel;
 use twinlight_core::kernels::sum_voxels::VoxelSums;
 use twinlight_core::kernels::trace::Hit;
@@ -129,4 +130,8 @@ impl Record for VoxelSums {
         field("emission", Kind::Unsigned, 3),
         field("padding_too", Kind::Unsigned, 1),
     ];
+}
+
+impl Record for VoxelLight {
+    const FIELDS: &'static [Field] = &[field("rgb", Kind::Unsigned, 3), field("opacity", Kind::Unsigned, 1)];
 }
