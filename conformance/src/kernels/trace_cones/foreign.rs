@@ -68,7 +68,7 @@ fn beyond_their_limits<B: Backend>(cx: &Context<'_, B>) -> Check {
 /// Words of `count` values.
 fn made_up(random: &mut Random, storage: u32, count: usize) -> Vec<u32> {
     let opacity = |random: &mut Random| {
-        let bits = 8 + random.index(9);
+        let bits = [8, 16, 16, 16][random.index(4)];
         random.index(4 << bits) as u32
     };
     let light = |random: &mut Random| random.index(5000) as u32;
