@@ -1,10 +1,10 @@
 //! Levels, values and cones that nobody made: some light, and no crash.
 
-use super::inputs::{Lit, cone, plain, scattered, some_block, some_cone};
+use super::inputs::{Lit, cone, filled, plain, scattered, some_block, some_cone};
 use super::{OPEN, STORAGES, agrees, same, traced};
 use crate::trial::{Check, Context, Listing, list_trials};
 use twinlight_core::Backend;
-use twinlight_core::kernels::reduce_mips::{ANISOTROPIC, HARMONICS, HARMONICS_8};
+use twinlight_core::kernels::reduce_mips::{ANISOTROPIC, HARMONICS, HARMONICS_8, VoxelLight};
 use twinlight_core::kernels::trace_cones::{Cone, SIXTY_DEGREES, TraceConesBlock};
 use twinlight_fixtures::random::Random;
 
@@ -46,7 +46,8 @@ fn foreign_values<B: Backend>(cx: &Context<'_, B>) -> Check {
 /// Opacities up to four times what is opaque, lobes that are steeper than they are high, and directions of any length.
 fn beyond_their_limits<B: Backend>(cx: &Context<'_, B>) -> Check {
     let mut random = Random::new(cx.options.seed ^ 74);
-    let leaves = scattered(&mut random, DIMS, 120);
+    // A block of voxels, beside each other as those must be whose mean is beyond 1, and nothing around it.
+    let leaves = filled([1, 0, 3], [8, 4, 9], VoxelLight::default());
     for storage in STORAGES {
         let of_leaves = Lit::new(DIMS, &leaves, storage);
         let values = made_up(&mut random, storage, of_leaves.levels.active.len());
@@ -67,7 +68,7 @@ fn beyond_their_limits<B: Backend>(cx: &Context<'_, B>) -> Check {
 /// Words of `count` values.
 fn made_up(random: &mut Random, storage: u32, count: usize) -> Vec<u32> {
     let opacity = |random: &mut Random| {
-        let bits = random.index(17);
+        let bits = [8, 16, 16, 16][random.index(4)];
         random.index(4 << bits) as u32
     };
     let light = |random: &mut Random| random.index(5000) as u32;
