@@ -4,6 +4,7 @@
 use crate::compare::{Shape, exact};
 use crate::expectations::Verdict;
 use crate::kernels::filter_indirect::{filtered_over, inputs, within_intervals};
+use crate::kernels::light_voxels::lit_over;
 use crate::kernels::query_lhb::scattered;
 use crate::kernels::reduce_mips::{all_of, inputs::surfaces};
 use crate::kernels::sum_voxels::some_surfaces;
@@ -17,6 +18,7 @@ use twinlight_core::Backend;
 use twinlight_core::kernels::merge_lhb::MergeLhbParams;
 use twinlight_core::kernels::pack_lhb::PackLhbParams;
 use twinlight_core::kernels::rasterize_lhb::{CAP_FAR, LhbElement, RasterizeLhbParams};
+use twinlight_core::kernels::reduce_mips::VoxelLight;
 use twinlight_core::kernels::shade_primary::{GBufferTexel, ShadePrimaryParams};
 use twinlight_core::kernels::sum_voxels::VoxelSums;
 use twinlight_core::kernels::trace::Hit;
@@ -49,6 +51,7 @@ pub fn checks<A: Backend, B: Backend>() -> Vec<(&'static str, CrossCheck<A, B>)>
         ("voxelize", voxels),
         ("sum_voxels", sums),
         ("trace_cones", cones),
+        ("light_voxels", voxel_lights),
     ]
 }
 
@@ -428,5 +431,31 @@ fn z_test(films: &[Vec<FilmTexel>; 2], params: &TracePathsParams) -> Check {
             test.bias_z,
             test.bias_threshold
         )
+    })
+}
+
+/// Share of the leaves that may differ in portable mode by more than roundings: shadow rays past edges.
+const GRAZING: f64 = 0.01;
+
+/// Light on voxels all over the scene.
+fn voxel_lights<A: Backend, B: Backend>(a: &A, b: &B) -> Check {
+    each_scene(|scene| {
+        let compiled = compiled(scene);
+        let (want, got) = (lit_over(a, &compiled)?, lit_over(b, &compiled)?);
+        if both_strict(a, b) {
+            return exact(
+                &context(b, &Options::default(), "cross.light_voxels"),
+                "leaves",
+                &got,
+                &want,
+                Shape::Line,
+            );
+        }
+        let near = |(got, want): &(&VoxelLight, &VoxelLight)| {
+            let close = |(got, want): (&u32, u32)| got.abs_diff(want) <= 1 + want / 4096;
+            got.opacity == want.opacity && got.rgb.iter().zip(want.rgb).all(close)
+        };
+        let far = got.len() - got.iter().zip(&want).filter(near).count();
+        ensure(far as f64 <= GRAZING * got.len() as f64, || format!("{far} of {} leaves differ", got.len()))
     })
 }

@@ -78,7 +78,7 @@ fn some_cones(seed: u64, count: usize) -> Vec<Cone> {
         let normal = if n[9] & 1 == 0 { [along(6), along(7), along(8)] } else { [0.0; 3] };
         Cone {
             origin: [0, 1, 2].map(|a| unit(n[a]) * 42.0 - 1.0),
-            sine: if n[9] % 3 == 0 { 0.0 } else { unit(n[10]) },
+            sine: if n[9].is_multiple_of(3) { 0.0 } else { unit(n[10]) },
             direction: [along(3), along(4), along(5)],
             start: unit(n[11]) * 3.0,
             normal,

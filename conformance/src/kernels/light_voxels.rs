@@ -16,12 +16,13 @@ mod shadows;
 
 use crate::compare::{Evidence, Shape};
 use crate::oracle::light_voxels::{Expected, Voxel, expected, units};
-use crate::trial::{Check, Context, Failure, Listing};
+use crate::trial::{Check, Context, Failure, Listing, Options};
 use twinlight_core::Backend;
 use twinlight_core::kernels::filter_indirect::RadianceTexel;
 use twinlight_core::kernels::light_voxels::LightVoxelsBlock;
 use twinlight_core::kernels::reduce_mips::{OPAQUE, VoxelLight};
 use twinlight_core::kernels::sum_voxels::VoxelSums;
+use twinlight_core::kernels::trace_cones::VoxelFrame;
 use twinlight_core::scene::CompiledScene;
 
 /// Lists the trials.
@@ -124,4 +125,14 @@ fn lit_in<B: Backend>(
 /// What leaves hold before the kernel runs.
 fn garbage(len: usize) -> Vec<VoxelLight> {
     vec![VoxelLight { rgb: [0xffff_ffff, 0x7f80_0001, 7], opacity: 0xdead_beef }; len]
+}
+
+/// Leaves of made-up voxels all over a scene.
+pub(crate) fn lit_over<B: Backend>(backend: &B, scene: &CompiledScene) -> Checked<Vec<VoxelLight>> {
+    let (low, high) = scene.bounds;
+    let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f32::max);
+    let mut block = LightVoxelsBlock { samples: 4, scale: 4096.0, ..inputs::block() };
+    block.frame = VoxelFrame { corner: low.map(|x| x - extent / 16.0), voxels_per_unit: 7.0 / extent };
+    let cx = Context { backend, options: &Options::default(), name: "light_voxels" };
+    lit_in(&cx, &backend.upload_scene(scene)?, &block, &inputs::voxels(80, 700))
 }
