@@ -10,6 +10,8 @@ use twinlight_methods::gbuffer;
 use twinlight_methods::reference::{Control, Film, Settings, render};
 use twinlight_methods::voxel::{Cones, Gathered, Storage, VoxelSettings, build, gather};
 
+mod surfaces;
+
 const SIZE: u32 = 32;
 
 fn film(backend: &CpuBackend, scene: &CompiledScene, camera: &Camera, bounces: u32) -> Film {
