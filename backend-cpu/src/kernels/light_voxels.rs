@@ -16,7 +16,7 @@ use twinlight_core::kernels::reduce_mips::VoxelLight;
 use twinlight_core::kernels::sum_voxels::VoxelSums;
 use twinlight_core::transport::SceneView;
 use twinlight_core::transport::light::spheres_occlude;
-use twinlight_core::transport::voxel_light::{voxel_leaf, voxel_point, voxel_sample};
+use twinlight_core::transport::voxel_light::{VoxelSample, voxel_leaf, voxel_point, voxel_sample};
 
 /// What is known of the active voxels.
 #[derive(Clone, Copy)]
@@ -89,12 +89,7 @@ fn samples_of(params: &LightVoxelsBlock) -> f32 {
 }
 
 #[inline(always)]
-fn is_shadowed<W: Width>(
-    width: W,
-    scene: &SceneData,
-    view: &SceneView<'_>,
-    sample: &twinlight_core::transport::voxel_light::VoxelSample,
-) -> bool {
+fn is_shadowed<W: Width>(width: W, scene: &SceneData, view: &SceneView<'_>, sample: &VoxelSample) -> bool {
     scene.bvh.occluded(width, sample.origin, sample.direction, 0.0, sample.reach)
         || spheres_occlude(view, sample.origin, sample.direction, sample.reach, sample.light)
 }

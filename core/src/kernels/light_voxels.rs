@@ -17,7 +17,8 @@
 //!    rays of `trace_paths` do.
 //! 4. *Irradiance.* E += emission · |n·ω| / pdf where nothing is in between; ω is the direction from c. Without a normal ½ stands for the
 //!    cosine, its mean over all normals.
-//! 5. *Leaf.* L = (ρ/π)·(E/samples + `gathered`) + (`emission`/`count`) · [`LightVoxelsBlock::emission_unit`]; r, g, b are ⌊L·scale + ½⌋, at most
+//! 5. *Leaf.* L = (`albedo`·((1/(`count`·4095))·(1/π)))·(E·(1/samples) + `gathered`) + `emission`·([`LightVoxelsBlock::emission_unit`]/`count`), in this
+//!    order, that is ρ/π times irradiance, and emission; without lights or samples E·(1/samples) is 0. r, g, b are ⌊L·scale + ½⌋, at most
 //!    [`MAX_RADIANCE`]; 0 where that is no number or below 0. The opacity is [`OPAQUE`].
 //!
 //! *Why both sides.* A voxel knows no side: triangles face either way, and a thin wall is lit from either. What shines on both adds up.
