@@ -203,8 +203,7 @@ impl Broken<'_> {
 
     fn through_faces(&self, words: &[u32], direction: Point) -> Sample {
         let mut sum = [0.0; 4];
-        for axis in 0..3 {
-            let c = direction[axis];
+        for (axis, c) in direction.into_iter().enumerate() {
             let other = self.has(Fault::ConesSwapFaces);
             let face = 2 * axis + usize::from((c < 0.0) == other);
             let weight = if self.has(Fault::ConesUnsquared) { c.abs() } else { c * c };

@@ -39,9 +39,9 @@ fn unsigned(word: u32) -> Within {
 /// The faces by which a cone comes in, weighed by the squares of its direction.
 fn from_faces(words: &[u32], direction: [f64; 3]) -> Sample {
     let mut sum = [ZERO; 4];
-    for axis in 0..3 {
-        let face = 2 * axis + usize::from(direction[axis] >= 0.0);
-        let along = Within::exactly(direction[axis]);
+    for (axis, component) in direction.into_iter().enumerate() {
+        let face = 2 * axis + usize::from(component >= 0.0);
+        let along = Within::exactly(component);
         for (w, sum) in sum.iter_mut().enumerate() {
             *sum = *sum + along * along * unsigned(words[4 * face + w]);
         }
