@@ -13,13 +13,7 @@ pub struct Snapped {
 
 impl Snapped {
     fn new(mesh: LatticeMesh) -> Self {
-        let (mut low, mut high) = ([i16::MAX; 3], [i16::MIN; 3]);
-        for vertex in mesh.vertices() {
-            for (axis, &c) in vertex.iter().enumerate() {
-                low[axis] = low[axis].min(c);
-                high[axis] = high[axis].max(c);
-            }
-        }
+        let (low, high) = mesh.bounds();
         Self { mesh, low, high }
     }
 

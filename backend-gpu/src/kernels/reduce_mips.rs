@@ -42,7 +42,7 @@ pub const WORKGROUP_SIZE: u32 = 256;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct ReduceMipsBlock {
-    /// One of the storages; those that the WGSL packs afterwards count as what they are packed from.
+    /// One of the storages, for the entry points that ask; bytes are packed from harmonics.
     pub storage: u32,
     /// Voxels on the longest axis of level 0.
     pub padded: u32,

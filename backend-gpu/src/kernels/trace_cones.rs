@@ -68,6 +68,9 @@ impl TraceConesCall {
     }
 }
 
+/// Cones per submission: one that takes seconds looks like a device that hangs.
+const SUBMISSION: usize = 1 << 18;
+
 /// Runs the kernel; see the contract.
 ///
 /// # Errors
@@ -85,8 +88,8 @@ pub fn run(
     device.expect_bindable::<u32>("values of voxels", values.len())?;
     let pipeline = device.pipeline(&SOURCE, "trace_cones")?;
     let whole = TraceConesCall::new(levels, values.len(), params);
-    let mut recorder = device.record("trace cones");
-    for chunk in chunks(cones.len(), device.elements_per_binding(size_of::<Cone>())) {
+    for chunk in chunks(cones.len(), device.elements_per_binding(size_of::<Cone>()).min(SUBMISSION)) {
+        let mut recorder = device.record("trace cones");
         let call = TraceConesCall { cone_count: chunk.len() as u32, ..whole };
         let buffers = [
             ("mask", levels.mask.binding()),
@@ -97,7 +100,7 @@ pub fn run(
         ];
         let workgroups = call.cone_count.div_ceil(WORKGROUP_SIZE);
         recorder.dispatch("trace cones", &pipeline, &call, &buffers, workgroups)?;
+        recorder.run()?;
     }
-    recorder.run()?;
     Ok(())
 }

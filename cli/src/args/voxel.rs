@@ -1,6 +1,7 @@
 //! Knobs of the method voxel.
 
 use clap::Args;
+use twinlight::kernels::light_voxels::MAX_SAMPLES;
 use twinlight::lattice::MAX_VOXELS;
 use twinlight::methods::voxel::{Cones, Storage, VoxelSettings};
 
@@ -15,12 +16,12 @@ pub struct VoxelArgs {
     /// What voxels store of the light that leaves them: iso (a colour), aniso (one per face), sh (spherical harmonics) or sh8 (those in bytes)
     #[arg(long, value_name = "NAME", env = "TWINLIGHT_STORAGE", default_value_t = VoxelSettings::default().storage, value_parser = storage)]
     pub storage: Storage,
-    /// Cones that gather diffuse light: 6 (of 60 degrees, a sample per level), or generic:N (N narrower ones, slower and smoother)
+    /// Cones that gather diffuse light: 6 (of 60 degrees, a sample per level), or generic:N (4 to 256 narrower ones, slower and smoother; generic is generic:16)
     #[arg(long, value_name = "HOW", env = "TWINLIGHT_CONES", default_value_t = VoxelSettings::default().cones, value_parser = cones)]
     pub cones: Cones,
     /// Shadow rays per voxel
     #[arg(long, value_name = "N", env = "TWINLIGHT_LIGHT_SAMPLES", default_value_t = VoxelSettings::default().light_samples,
-          value_parser = clap::value_parser!(u32).range(1..=4096))]
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub light_samples: u32,
 }
 

@@ -161,6 +161,12 @@ impl Session<'_> {
             MethodName::Voxel => Some(voxel::build(backend, &resident, compiled, &self.job.voxels)?),
             _ => None,
         };
+        if let Some(lit) = lit.as_ref().filter(|lit| lit.saturated > 0) {
+            let (saturated, all) = (lit.saturated, lit.voxels());
+            tell(format!(
+                "{saturated} of {all} voxels are too bright for their integers: light is missing near lamps"
+            ));
+        }
         let lookups = buffers.as_ref().map(|buffers| Built {
             time: buffers.build_time,
             views: buffers.views.len(),
@@ -190,7 +196,10 @@ impl Session<'_> {
         let surfaces = match wanted.then(|| self.surfaces(backend, &resident, lit.as_ref(), &taken.film)) {
             None => None,
             Some(Ok(surfaces)) => Some(surfaces),
-            Some(Err(Error::Unsupported(why))) => {
+            // What was sampled is a picture without them.
+            Some(Err(
+                why @ (Error::Unsupported(_) | Error::LimitExceeded { .. } | Error::OutOfMemory { .. }),
+            )) => {
                 tell(format!("{}: {why}", self.missing()));
                 None
             }

@@ -50,6 +50,14 @@ pub fn attributes(
         ("bounces", job.bounces().map_or("unlimited".into(), |n| n.to_string())),
         ("stop", done.taken.stop.name().into()),
     ];
+    attributes.extend(done.voxels.as_ref().map(|_| {
+        let knobs = &job.voxels;
+        let what = format!(
+            "grid {}, storage {}, cones {}, light samples {}",
+            knobs.grid, knobs.storage, knobs.cones, knobs.light_samples
+        );
+        ("voxel", what)
+    }));
     attributes.extend(moment.map(|moment| ("seconds", moment.seconds.to_string())));
     attributes
 }

@@ -41,7 +41,8 @@
 //! it.
 //! *Errors.* Levels of other origin: some light, and nothing outside of the buffers is read.
 //! *Source.* Crassin et al., "Interactive indirect illumination using voxel cone tracing", 2011; Rauwendaal, voxel cone tracing: spheres that touch,
-//! the 60° cone, ambient cubes. Deviation: bounded at 180°.
+//! the 60° cone, ambient cubes. Deviations: bounded from 140° on; in 60° cones spheres overlap, as there, so that what is on the axis counts by up to a
+//! third twice.
 
 use crate::accuracy::Accuracy;
 use crate::error::{Error, Result};
@@ -56,7 +57,7 @@ pub const ACCURACY: Accuracy = Accuracy::Interval {
     because: "exact in strict mode; elsewhere a few ulp per sample, and a voxel's width where ⌊q⌋ or the end of a cone is decided by a rounding",
 };
 
-/// Most of [`Cone::sine`]: spheres grow thirteen times then, and the next is beyond most scenes.
+/// Most of [`Cone::sine`]: spheres grow thirty-one times then, and the next is beyond most scenes.
 pub const MAX_SINE: f32 = 0.9375;
 /// Most samples of a cone: a ray through the diagonal of the largest grid takes 887.
 pub const MAX_STEPS: u32 = 1024;
@@ -80,7 +81,8 @@ pub struct Cone {
     pub direction: [f32; 3],
     /// Distance to the first sample's centre.
     pub start: f32,
-    /// Unit normal of the surface that the apex is on, or 0 0 0 where it is on none.
+    /// Unit normal of a surface, or 0 0 0 for none: what isn't above the plane through the apex is not seen. An apex above its surface hides
+    /// as much more.
     pub normal: [f32; 3],
     /// Unused, 0.
     pub padding: u32,

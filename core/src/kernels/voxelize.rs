@@ -36,7 +36,7 @@
 //! 3. *Active lists*: `active`, the codes of met voxels, ascending; `parents`, those of the next level, code div 8 without repetition.
 //!
 //! *How 32 bits suffice.* Coordinates are in [0, 2¹⁵): n and, at a centre of the grid, E are twice the area of a triangle in a square of that
-//! side, at most 2³⁰ (2²⁹ in a grid of one voxel). What is added is at most 2²⁹, or 2³⁰ + 2¹⁶ in a grid of one voxel. z* takes 64 bits and a
+//! side, at most 2³⁰ (2²⁹ in a grid of one voxel). What is added is at most 2²⁹ + 2¹⁶, or 2³⁰ + 2¹⁶ in a grid of one voxel. z* takes 64 bits and a
 //! division, once per cell.
 //! *Edge cases.* No triangles: nothing. Grids of one voxel, or of one voxel's thickness: as others.
 //! *Limits.* [`crate::lattice::MAX_VOXELS`] voxels per axis, so that codes have 27 bits; [`MAX_TRIANGLES`] triangles.
@@ -68,7 +68,7 @@ pub const MARGIN: i32 = 1;
 /// [`VoxelizeParams::cutoff`]: every triangle is small.
 pub const NO_CUTOFF: u32 = u32::MAX;
 
-/// Most triangles: more than 512³ voxels can tell apart.
+/// Most triangles: with more, two flags for each leave a binding of 128 MiB.
 pub const MAX_TRIANGLES: usize = 1 << 24;
 
 /// Parameters of one call.

@@ -101,7 +101,7 @@ impl VoxelGrid {
     /// Where a point in grid coordinates is, in lattice steps: the inverse of [`VoxelGrid::place`] without its rounding.
     pub fn lattice_point(&self, point: [f64; 3]) -> [f64; 3] {
         let half = f64::from(1 << (SCALE_BITS - 1));
-        // A grid over a single point has all of it in one place.
+        // No grid of `over`, but one that `check` accepts, has the scale 0: all of it is in one place.
         let scale = f64::from(self.scale.max(1));
         [0, 1, 2].map(|axis| {
             let units = point[axis] * f64::from(1 << SCALE_BITS);

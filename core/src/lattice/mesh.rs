@@ -87,6 +87,14 @@ impl LatticeMesh {
         &self.vertices
     }
 
+    /// The least and the greatest coordinates; 0 without vertices.
+    pub fn bounds(&self) -> ([i16; 3], [i16; 3]) {
+        let Some(&first) = self.vertices.first() else { return ([0; 3], [0; 3]) };
+        self.vertices.iter().fold((first, first), |(low, high), v| {
+            ([0, 1, 2].map(|i| low[i].min(v[i])), [0, 1, 2].map(|i| high[i].max(v[i])))
+        })
+    }
+
     /// Vertex numbers.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles

@@ -201,7 +201,7 @@ impl VoxelTriangle {
 }
 
 impl Edge {
-    /// Twice the area of the triangle that a point makes with the edge. Within ±2³⁰ in the grid; products wrap.
+    /// Twice the area of the triangle that a point makes with the edge. Within ±2³⁰ in the grid, as are its products.
     #[inline(always)]
     fn at(&self, [x, y]: [i32; 2]) -> i32 {
         let ahead = self.step[0].wrapping_mul(y - self.from[1]);

@@ -1,37 +1,52 @@
 //! How bright voxels may be: what their integers must hold.
 
 use twinlight_core::scene::{
-    CompiledScene, LIGHT_DIRECTIONAL, LIGHT_ENVIRONMENT, LIGHT_POINT, LIGHT_SPOT, LightRecord, NONE,
+    CompiledScene, LIGHT_DIRECTIONAL, LIGHT_ENVIRONMENT, LIGHT_POINT, LIGHT_SPHERE, LIGHT_SPOT, NONE,
 };
+use twinlight_core::transport::{INV_PI, PI};
 
 /// A point light this share of the scene's extent away is the nearest that is told apart: closer, voxels saturate.
 const NEAREST: f32 = 1.0 / 64.0;
 
-/// A bound of the radiance that a white voxel reflects of the scene's lights.
+/// What is left for light that is scattered more than once, and for both sides of a voxel that are lit.
+const HEADROOM: f32 = 4.0;
+
+/// About the most radiance that a white voxel reflects of the scene's lights: voxels that are brighter saturate, and are counted.
 ///
-/// What comes from lamps of an area fills at most a hemisphere, which reflects at most their own radiance: the brightest counts. Light of the environment counts
-/// by its mean over the sphere, four times of which is a bound of its irradiance over π. The others add up.
+/// A lamp of an area A reflects in a surface at the distance d at most L·A/(π·d²), and at most L: all lamps together at most twice the brightest of them, on
+/// both sides. Points are lamps at the nearest distance. Light of the environment counts by its mean over the sphere, four times of which is a
+/// bound of its irradiance over π.
 pub(super) fn brightest(scene: &CompiledScene) -> f32 {
-    const INV_PI: f32 = twinlight_core::transport::INV_PI;
     let (low, high) = (glam::Vec3::from(scene.bounds.0), glam::Vec3::from(scene.bounds.1));
     let near = (high - low).length() * NEAREST;
-    let (mut area, mut others) = (0.0_f32, 4.0 * environment(scene));
+    let (mut area, mut most_area, mut others) = (0.0_f32, 0.0_f32, 4.0 * environment(scene));
     for light in &scene.lights {
         let most = most_of(light.emission);
         match light.kind {
             LIGHT_ENVIRONMENT => {}
             LIGHT_DIRECTIONAL => others += most * INV_PI,
-            LIGHT_POINT | LIGHT_SPOT => others += distant(light, near),
-            _ => area = area.max(most),
+            LIGHT_POINT | LIGHT_SPOT => others += distant(most, near),
+            kind => {
+                let facing = if kind == LIGHT_SPHERE { PI * light.radius * light.radius } else { light.area };
+                let reflected = distant(most * facing, near);
+                area += if reflected < most { reflected } else { most };
+                most_area = if most > most_area { most } else { most_area };
+            }
         }
     }
-    let bound = area + others;
-    if bound.is_finite() && bound > 0.0 { bound } else { 1.0 }
+    let twice = most_area + most_area;
+    let bound = ((if area < twice { area } else { twice }) + others) * HEADROOM;
+    if bound > LEAST { if bound < MOST { bound } else { MOST } } else { LEAST }
 }
 
-fn distant(light: &LightRecord, near: f32) -> f32 {
+/// Bounds whose units and their inverses are normal numbers.
+const LEAST: f32 = 1e-25;
+const MOST: f32 = 1e30;
+
+/// Radiance of a white surface at a distance `near` from what has the intensity `most`.
+fn distant(most: f32, near: f32) -> f32 {
     let squared = near * near;
-    if squared > 0.0 { most_of(light.emission) / squared * twinlight_core::transport::INV_PI } else { 0.0 }
+    if squared > 0.0 { most / squared * INV_PI } else { most }
 }
 
 fn most_of(rgb: [f32; 3]) -> f32 {

@@ -1,7 +1,7 @@
 //! From a scene to lit voxels on all levels.
 
 use super::light::Lighting;
-use super::{VoxelSettings, bright, surfaces};
+use super::{MAX_BOUNCES, VoxelSettings, bright, surfaces};
 use std::time::{Duration, Instant};
 use twinlight_core::kernels::light_voxels::LightVoxelsBlock;
 use twinlight_core::kernels::reduce_mips::{MAX_RADIANCE, ReduceMipsParams, VoxelLevels, VoxelLight};
@@ -9,7 +9,7 @@ use twinlight_core::kernels::trace_cones::{TraceConesBlock, VoxelFrame};
 use twinlight_core::kernels::voxelize::VoxelizeParams;
 use twinlight_core::lattice::{Lattice, LatticeMesh, VoxelGrid};
 use twinlight_core::scene::CompiledScene;
-use twinlight_core::{Backend, Result};
+use twinlight_core::{Backend, Error, Result};
 
 /// Lit voxels of a scene, on a device.
 pub struct Lit<B: Backend> {
@@ -25,6 +25,8 @@ pub struct Lit<B: Backend> {
     pub voxelize_time: Duration,
     /// Time to light voxels.
     pub light_time: Duration,
+    /// Voxels of the finest level that are as bright as integers hold, or brighter: light is missing.
+    pub saturated: usize,
     /// Time to reduce them to coarser levels.
     pub reduce_time: Duration,
 }
@@ -38,6 +40,7 @@ impl<B: Backend> Lit<B> {
     /// Stores the light of voxels on all levels.
     fn store(&mut self, backend: &B, leaves: &[VoxelLight]) -> Result<()> {
         let start = Instant::now();
+        self.saturated = leaves.iter().filter(|leaf| leaf.rgb.contains(&MAX_RADIANCE)).count();
         let params = ReduceMipsParams { storage: self.call.storage };
         self.values = backend.reduce_mips(&self.levels, &backend.upload(leaves)?, &params)?;
         self.reduce_time += start.elapsed();
@@ -61,9 +64,12 @@ pub fn build<B: Backend>(
     scene: &CompiledScene,
     settings: &VoxelSettings,
 ) -> Result<Lit<B>> {
+    if settings.bounces > MAX_BOUNCES {
+        return Err(Error::limit("bounces of voxels", settings.bounces.into(), MAX_BOUNCES.into()));
+    }
     let lattice = Lattice::of_scene(scene)?;
     let mesh = LatticeMesh::of_scene(&lattice, scene)?;
-    let (low, high) = bounds(&mesh);
+    let (low, high) = mesh.bounds();
     let grid = VoxelGrid::over(low, high, settings.grid)?;
     let (frame, voxel) = frame(&lattice, &grid);
     let start = Instant::now();
@@ -83,6 +89,7 @@ pub fn build<B: Backend>(
         seed: settings.seed,
         samples: settings.light_samples,
         scale: 1.0 / unit,
+        // Lamps are sampled: their emission would count twice.
         emission_unit: 0.0,
     };
     let call = TraceConesBlock { frame, unit, reach: f32::MAX, storage: settings.storage.code(), flags: 0 };
@@ -93,6 +100,7 @@ pub fn build<B: Backend>(
         voxel,
         voxelize_time,
         light_time: Duration::ZERO,
+        saturated: 0,
         reduce_time: Duration::ZERO,
     };
     let lighting = Lighting { backend, resident, active: &voxels.active, sums: &sums, block: lights };
@@ -109,17 +117,6 @@ pub fn build<B: Backend>(
         }
     }
     Ok(lit)
-}
-
-fn bounds(mesh: &LatticeMesh) -> ([i16; 3], [i16; 3]) {
-    let (mut low, mut high) = ([i16::MAX; 3], [i16::MIN; 3]);
-    for vertex in mesh.vertices() {
-        for (axis, &c) in vertex.iter().enumerate() {
-            low[axis] = low[axis].min(c);
-            high[axis] = high[axis].max(c);
-        }
-    }
-    if mesh.vertices().is_empty() { ([0; 3], [0; 3]) } else { (low, high) }
 }
 
 /// Where a grid over a lattice is in the world, and how wide its voxels are.

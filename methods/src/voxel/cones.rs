@@ -99,7 +99,8 @@ impl Bundle {
     }
 }
 
-/// Six cones of every voxel, along its normal; of those without one, upwards.
+/// Six cones of every voxel, on the side of its normal, which is that of its triangles' winding: what is behind is as a rule the inside of a thing,
+/// whose walls are lit voxels too. Those without a normal look along +z, a side as good as any.
 pub(super) fn voxel_cones<B: Backend>(lit: &Lit<B>, sums: &[VoxelSums], active: &[u32]) -> (Bundle, u32) {
     let (lobes, flags) = hemisphere(Cones::Six);
     let mut bundle = Bundle::new(lobes, active.len());

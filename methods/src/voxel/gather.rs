@@ -1,6 +1,7 @@
 //! Indirect light of what the camera sees.
 
 use super::cones::{Bundle, hemisphere};
+use super::surfaces::mean_reflectance;
 use super::{Lit, VoxelSettings};
 use crate::reference::Film;
 use glam::Vec3;
@@ -44,13 +45,16 @@ pub fn gather<B: Backend>(
     let eye = Vec3::from(camera.record(film.width(), film.height(), scene.origin)?.position);
     let mut indirect = vec![[0.0; 3]; gbuffer.len()];
     if settings.bounces > 1 {
-        diffuse(backend, scene, lit, gbuffer, settings, &mut indirect)?;
+        diffuse(backend, scene, lit, gbuffer, eye, settings, &mut indirect)?;
         glossy(backend, scene, lit, gbuffer, eye, &mut indirect)?;
     }
     let add = |(direct, indirect): ([f32; 3], &[f32; 3])| [0, 1, 2].map(|c| direct[c] + indirect[c]);
     let radiance = film.direct().into_iter().zip(&indirect).map(add).collect();
     Ok(Gathered { radiance, indirect })
 }
+
+/// Cones that are traced together: 48 bytes each, here and on the device.
+const CONES_AT_ONCE: usize = 1 << 20;
 
 /// Pixels whose surface's material is as asked.
 fn pixels<'a>(
@@ -69,20 +73,29 @@ fn diffuse<B: Backend>(
     scene: &CompiledScene,
     lit: &Lit<B>,
     gbuffer: &[GBufferTexel],
+    eye: Vec3,
     settings: &VoxelSettings,
     indirect: &mut [[f32; 3]],
 ) -> Result<()> {
     let pixels: Vec<usize> = pixels(scene, gbuffer, |m| m.kind == MATERIAL_OPAQUE).collect();
     let (lobes, flags) = hemisphere(settings.cones);
-    let mut bundle = Bundle::new(lobes, pixels.len());
-    for &pixel in &pixels {
-        let texel = &gbuffer[pixel];
-        bundle.push(texel.position.into(), texel.shading_normal.into(), lit.voxel);
-    }
-    let light = traced(backend, lit, &bundle.cones, flags)?;
-    for (&pixel, irradiance) in pixels.iter().zip(bundle.sums(&light)) {
-        let albedo = gbuffer[pixel].albedo;
-        indirect[pixel] = [0, 1, 2].map(|c| irradiance[c] * (albedo[c] * INV_PI));
+    for pixels in pixels.chunks((CONES_AT_ONCE / lobes.len()).max(1)) {
+        let mut bundle = Bundle::new(lobes.clone(), pixels.len());
+        for &pixel in pixels {
+            let texel = &gbuffer[pixel];
+            bundle.push(texel.position.into(), texel.shading_normal.into(), lit.voxel);
+        }
+        let light = traced(backend, lit, &bundle.cones, flags)?;
+        for (&pixel, irradiance) in pixels.iter().zip(bundle.sums(&light)) {
+            let texel = &gbuffer[pixel];
+            let material = &scene.materials[texel.material as usize];
+            let view = normalized(eye - Vec3::from(texel.position));
+            let (outwards, inwards) =
+                (schlick(material, Vec3::from(texel.shading_normal).dot(view)), mean_reflectance(material));
+            // What is reflected on the way in or out is not scattered.
+            let share = |c: usize| (1.0 - inwards[c]) * (1.0 - outwards[c]);
+            indirect[pixel] = [0, 1, 2].map(|c| irradiance[c] * (texel.albedo[c] * INV_PI * share(c)));
+        }
     }
     Ok(())
 }
@@ -97,19 +110,21 @@ fn glossy<B: Backend>(
 ) -> Result<()> {
     let shines = |m: &MaterialRecord| m.kind != MATERIAL_DIELECTRIC && m.specular_f90 > 0.0;
     let pixels: Vec<usize> = pixels(scene, gbuffer, shines).collect();
-    let mut cones = Vec::with_capacity(pixels.len());
-    let mut reflectances = Vec::with_capacity(pixels.len());
-    for &pixel in &pixels {
-        let texel = &gbuffer[pixel];
-        let material = &scene.materials[texel.material as usize];
-        let (cone, cosine) = reflected(texel, material, eye, lit.voxel);
-        cones.push(cone);
-        reflectances.push(schlick(material, cosine));
-    }
-    let light = traced(backend, lit, &cones, 0)?;
-    for ((&pixel, light), reflectance) in pixels.iter().zip(&light).zip(&reflectances) {
-        for c in 0..3 {
-            indirect[pixel][c] += light.rgb[c] * reflectance[c];
+    for pixels in pixels.chunks(CONES_AT_ONCE) {
+        let mut cones = Vec::with_capacity(pixels.len());
+        let mut reflectances = Vec::with_capacity(pixels.len());
+        for &pixel in pixels {
+            let texel = &gbuffer[pixel];
+            let material = &scene.materials[texel.material as usize];
+            let (cone, cosine) = reflected(texel, material, eye, lit.voxel);
+            cones.push(cone);
+            reflectances.push(schlick(material, cosine));
+        }
+        let light = traced(backend, lit, &cones, 0)?;
+        for ((&pixel, light), reflectance) in pixels.iter().zip(&light).zip(&reflectances) {
+            for c in 0..3 {
+                indirect[pixel][c] += light.rgb[c] * reflectance[c];
+            }
         }
     }
     Ok(())
@@ -159,8 +174,11 @@ fn lobe_sine(alpha: f32) -> f32 {
     twinlight_core::math::trig::sin_cos_turns(turns).0
 }
 
-/// Schlick's reflectance.
+/// What a surface reflects without scattering: by Schlick, but mirrors the same at every angle, as [`twinlight_core::transport::bsdf`] has them.
 fn schlick(material: &MaterialRecord, cosine: f32) -> [f32; 3] {
+    if material.kind != MATERIAL_OPAQUE {
+        return material.specular_f0;
+    }
     let c = (1.0 - cosine).clamp(0.0, 1.0);
     let fifth = (c * c) * (c * c) * c;
     material.specular_f0.map(|f0| f0 + (material.specular_f90 - f0) * fifth)

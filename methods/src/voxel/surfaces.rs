@@ -68,8 +68,10 @@ fn surface_of(
 ) -> VoxelSurface {
     let has_normals = attributes.flags & HAS_NORMALS != 0;
     let corner = |normal: [f32; 3]| normal_word(if has_normals { normal } else { triangle.normal });
-    // Mirrors and glass have no diffuse light.
-    let albedo = if material.kind == MATERIAL_OPAQUE { material.albedo } else { [0.0; 3] };
+    let reflected = mean_reflectance(material);
+    // Light is scattered that is reflected neither on the way in nor out. Mirrors and glass scatter none.
+    let scattered = |c: usize| material.albedo[c] * ((1.0 - reflected[c]) * (1.0 - reflected[c]));
+    let albedo = if material.kind == MATERIAL_OPAQUE { [0, 1, 2].map(scattered) } else { [0.0; 3] };
     let mut surface = VoxelSurface {
         normals: [attributes.n0, attributes.n1, attributes.n2].map(corner),
         texture: NONE,
@@ -84,6 +86,11 @@ fn surface_of(
         texture.put(&mut surface, uv, longest_side(triangle) / voxel);
     }
     surface
+}
+
+/// Schlick's reflectance of light from all sides: the mean of (1 − cos)⁵ weighed by the cosine is 1/21.
+pub(super) fn mean_reflectance(material: &MaterialRecord) -> [f32; 3] {
+    material.specular_f0.map(|f0| f0 + (material.specular_f90 - f0) * (1.0 / 21.0))
 }
 
 /// 12 bits each.
