@@ -54,13 +54,14 @@ def table(options, scene: str, folder: Path) -> None:
         print(row(f"{directions}, {size}², {cone}", compare(options, out, truth), sidecar), flush=True)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def tables(description: str, spp: int, table) -> None:
+    """Prints `table` of every scene of the command line."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="+")
     parser.add_argument("--twinlight", default="twinlight")
     parser.add_argument("--allow-path", action="append", default=[], help="folders beside the scene's that it may read")
     parser.add_argument("--size", type=int, default=128)
-    parser.add_argument("--spp", type=int, default=256)
+    parser.add_argument("--spp", type=int, default=spp)
     parser.add_argument("--reference-spp", type=int, default=1024)
     parser.add_argument("--bounces", type=int, default=4)
     options = parser.parse_args()
@@ -70,4 +71,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    tables(__doc__, 256, table)

@@ -6,12 +6,10 @@ Prints a Markdown table per scene. The line "reference" is another render by the
 another seed: the noise that the other lines' direct light has too.
 """
 
-import argparse
 import itertools
-import tempfile
 from pathlib import Path
 
-from slhb_quality import compare, render
+from slhb_quality import compare, render, tables
 
 GRIDS, STORAGES, CONES = (64, 128, 256), ("iso", "aniso", "sh", "sh8"), ("6", "generic:16")
 
@@ -41,20 +39,5 @@ def table(options, scene: str, folder: Path) -> None:
         print(row(f"{grid}, {storage}, {cones}", compare(options, out, truth), sidecar), flush=True)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="+")
-    parser.add_argument("--twinlight", default="twinlight")
-    parser.add_argument("--allow-path", action="append", default=[], help="folders beside the scene's that it may read")
-    parser.add_argument("--size", type=int, default=128)
-    parser.add_argument("--spp", type=int, default=64)
-    parser.add_argument("--reference-spp", type=int, default=1024)
-    parser.add_argument("--bounces", type=int, default=4)
-    options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        for scene in options.scenes:
-            table(options, scene, Path(folder))
-
-
 if __name__ == "__main__":
-    main()
+    tables(__doc__, 64, table)
