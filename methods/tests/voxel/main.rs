@@ -94,6 +94,10 @@ fn an_open_floor_gathers_nothing() {
     let white = scene.add_material(Material::diffuse("white", [0.8; 3]));
     let floor = quad([-1.0, 0.3, 1.0], [1.0, 0.3, 1.0], [1.0, 0.3, -1.0], [-1.0, 0.3, -1.0]);
     scene.add_mesh(with_material(floor, white));
+    // Reflects nothing, and makes the grid higher than the floor is thick: cones of a flat one would begin outside.
+    let black = scene.add_material(Material::diffuse("black", [0.0; 3]));
+    let flag = quad([-1.0, 1.0, -1.0], [-0.8, 1.0, -1.0], [-0.8, 1.2, -1.0], [-1.0, 1.2, -1.0]);
+    scene.add_mesh(with_material(flag, black));
     scene.lights = vec![Light::Point { position: [0.2, 2.0, 0.1], intensity: [9.0; 3] }];
     let (scene, camera) = compiled(&scene);
     for grid in [1, 16, 37, 64] {
