@@ -9,7 +9,7 @@ use twinlight_core::math::fixed::{OUT_OF_RANGE, Words, add_saturating, from_floa
 use twinlight_core::math::vector::{basis, to_world};
 use twinlight_core::scene::{
     EMITS_BOTH_SIDES, LIGHT_TRIANGLE, MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_OPAQUE, MaterialRecord,
-    NONE,
+    NONE, NOTHING_HIDES,
 };
 use twinlight_core::transport::SceneView;
 use twinlight_core::transport::bsdf::{
@@ -199,6 +199,12 @@ pub(crate) fn visit(
     Visited { left: Some(Left { surface, is_opaque: material.kind == MATERIAL_OPAQUE }), direct }
 }
 
+/// Whether no triangle hides a light.
+#[inline(always)]
+pub(crate) fn nothing_hides(scene: &SceneView<'_>) -> bool {
+    scene.environment.flags & NOTHING_HIDES != 0
+}
+
 /// Adds light unless a shadow ray finds something in between.
 #[inline(always)]
 pub(crate) fn add_direct_light<W: Width>(
@@ -207,7 +213,7 @@ pub(crate) fn add_direct_light<W: Width>(
     scene: &SceneView<'_>,
     direct: &DirectLight,
 ) {
-    if !tracer.occluded(direct.origin, direct.direction, 0.0, direct.reach())
+    if (nothing_hides(scene) || !tracer.occluded(direct.origin, direct.direction, 0.0, direct.reach()))
         && !direct.is_behind_spheres(scene)
     {
         add_light(light, direct.order, direct.radiance);

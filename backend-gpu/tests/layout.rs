@@ -507,7 +507,7 @@ fn with_scene(mut structs: Vec<Layout>) -> Vec<Layout> {
             flags, spot_scale, spot_offset, area, padding,
         }),
         layout!(scene::EnvironmentHeader {
-            world_to_map, offset, width, height, light, light_count, sphere_count, padding,
+            world_to_map, offset, width, height, light, light_count, sphere_count, flags, padding,
         }),
     ]);
     structs

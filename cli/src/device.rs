@@ -1,6 +1,6 @@
 //! Choosing the backend.
 
-use crate::args::{BackendChoice, ModeName};
+use crate::args::{BackendChoice, DeviceArgs, ModeName};
 use crate::exit::{Failure, Stage};
 use twinlight::cpu::CpuBackend;
 #[cfg(feature = "gpu")]
@@ -15,16 +15,13 @@ pub enum Device {
     Gpu(Box<GpuBackend>),
 }
 
-/// Opens the backend that `choice` names; the second value is a notice about what could not be had.
+/// Opens the backend that flags name; the second value is a notice about what could not be had.
 ///
 /// # Errors
 /// [`twinlight::Error::BackendUnavailable`] and what opening a device refuses.
-pub fn open(
-    choice: &BackendChoice,
-    mode: Option<ModeName>,
-    threads: Option<u16>,
-) -> Result<(Device, Option<String>), Failure> {
-    match choice {
+pub fn open(args: &DeviceArgs) -> Result<(Device, Option<String>), Failure> {
+    let (mode, threads) = (args.mode, args.threads);
+    match &args.backend {
         BackendChoice::Cpu => Ok((Device::Cpu(cpu(threads)?), None)),
         BackendChoice::Gpu(selector) => gpu(selector, mode),
         BackendChoice::Auto => auto(mode, threads),

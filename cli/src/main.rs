@@ -7,6 +7,7 @@ mod device;
 mod devices;
 mod exit;
 mod interrupt;
+mod plan;
 mod render;
 mod report;
 mod scene;
@@ -41,6 +42,7 @@ fn quiet_drivers() {
 fn run(command: Command) -> Result<(), Failure> {
     match command {
         Command::Render(args) => render::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Devices { json } => devices::run(json),
         Command::Scene(command) => scene::run(&command),

@@ -3,9 +3,14 @@
 //! [`post`] compares, tone-maps and colours finished images; it knows no backend.
 
 mod gbuffer;
+mod meter;
+pub mod plan;
 pub mod post;
 pub mod reference;
+mod run;
 pub mod slhb;
 pub mod voxel;
 
 pub use gbuffer::gbuffer;
+pub use meter::{Calls, Metered};
+pub use run::{Built, Made, Picture, Surfaces};

@@ -6,6 +6,7 @@
 //! `light_voxels`: voxel by voxel in the order of their codes, so that neighbours' shadow rays go down the same branches of the hierarchy.
 
 use crate::parallel::{RAYS, fill_chunks};
+use crate::path::nothing_hides;
 use crate::scene::SceneData;
 use crate::simd::{Isa, Kernel, Width};
 use bytemuck::Zeroable;
@@ -90,6 +91,6 @@ fn samples_of(params: &LightVoxelsBlock) -> f32 {
 
 #[inline(always)]
 fn is_shadowed<W: Width>(width: W, scene: &SceneData, view: &SceneView<'_>, sample: &VoxelSample) -> bool {
-    scene.bvh.occluded(width, sample.origin, sample.direction, 0.0, sample.reach)
+    (!nothing_hides(view) && scene.bvh.occluded(width, sample.origin, sample.direction, 0.0, sample.reach))
         || spheres_occlude(view, sample.origin, sample.direction, sample.reach, sample.light)
 }

@@ -71,7 +71,8 @@ fn add_samples(
 }
 
 fn is_shadowed(light: VoxelSample) -> bool {
-    return occluded(light.origin, light.direction, 0.0f, light.reach)
+    let nothing_hides = (params.environment.flags & NOTHING_HIDES) != 0u;
+    return (!nothing_hides && occluded(light.origin, light.direction, 0.0f, light.reach))
         || spheres_occlude(light.origin, light.direction, light.reach, light.light);
 }
 

@@ -169,7 +169,7 @@ fn pattern_pixel(pixel: u32) -> u32 {
 // Whether the shadow rays of a vertex are looked up.
 fn shadows_are_looked_up(vertex: u32) -> bool {
     let flags = params.lookup.flags;
-    return (flags & SHADOW_LOOKUPS) != 0u && (vertex > 0u || (flags & SHADOW_LOOKUPS_FIRST) != 0u);
+    return !nothing_hides() && (flags & SHADOW_LOOKUPS) != 0u && (vertex > 0u || (flags & SHADOW_LOOKUPS_FIRST) != 0u);
 }
 
 // Leaves light for look_up_shadows. False where there is no direction to look up, which the tracer sees to.

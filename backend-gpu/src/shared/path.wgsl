@@ -194,10 +194,15 @@ fn is_behind_spheres(direct: DirectLight) -> bool {
     return spheres_occlude(direct.origin, direct.direction, shadow_reach(direct.infinite), direct.light);
 }
 
+// Whether no triangle hides a light.
+fn nothing_hides() -> bool {
+    return (params.environment.flags & NOTHING_HIDES) != 0u;
+}
+
 // Adds light unless a shadow ray finds something in between.
 fn add_direct_light(path: ptr<function, PathState>, direct: DirectLight) {
     if direct.is_any
-        && !occluded(direct.origin, direct.direction, 0.0f, shadow_reach(direct.infinite))
+        && (nothing_hides() || !occluded(direct.origin, direct.direction, 0.0f, shadow_reach(direct.infinite)))
         && !is_behind_spheres(direct) {
         add_light(path, direct.order, direct.radiance);
     }

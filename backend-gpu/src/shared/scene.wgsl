@@ -89,8 +89,12 @@ struct EnvironmentHeader {
     light: u32,
     light_count: u32,
     sphere_count: u32,
-    padding: vec2<u32>,
+    flags: u32,
+    padding: u32,
 }
+
+// EnvironmentHeader.flags
+const NOTHING_HIDES: u32 = 1u;
 
 // Every kernel that includes this file binds the scene here, and its own buffers from 8 on.
 @group(0) @binding(1) var<storage, read> nodes: array<BvhNode>;

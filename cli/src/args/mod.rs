@@ -2,6 +2,9 @@
 
 mod compare;
 mod conform;
+mod device;
+mod picture;
+mod plan;
 mod render;
 mod scene;
 mod values;
@@ -9,9 +12,12 @@ mod voxel;
 
 pub use compare::CompareArgs;
 pub use conform::ConformArgs;
+pub use device::DeviceArgs;
+pub use picture::PictureArgs;
+pub use plan::PlanArgs;
 pub use render::{
     ConeName, GatherName, LoadArgs, MethodName, MissesName, ModeName, ProgressMode, RenderArgs, Show,
-    ToneArgs,
+    SlhbArgs, ToneArgs,
 };
 pub use scene::{ConvertArgs, InspectArgs, SceneCommand};
 pub use values::{BackendChoice, Bounces, FrameRange, Size};
@@ -44,6 +50,8 @@ fn long_help() -> String {
 pub enum Command {
     /// Render a scene to PNG and EXR
     Render(Box<RenderArgs>),
+    /// Say what a render would simulate, what it would leave out, and why
+    Plan(Box<PlanArgs>),
     /// Compare two pictures: error metrics with their formulas
     Compare(CompareArgs),
     /// Show what kernels can run on: the CPU and GPU adapters

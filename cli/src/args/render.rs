@@ -1,9 +1,7 @@
 //! `render`.
 
-use super::VoxelArgs;
-use super::values::{
-    BackendChoice, Bounces, Bytes, CameraArg, FrameRange, Size, frame_rate, moment, seconds,
-};
+use super::values::{Bytes, FrameRange, frame_rate, moment, seconds};
+use super::{DeviceArgs, PictureArgs};
 use clap::builder::RangedI64ValueParser;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -316,9 +314,8 @@ pub enum ProgressMode {
 #[derive(Debug, Args)]
 #[command(after_long_help = EXAMPLES, after_help = "`--help` shows examples and explains more.")]
 pub struct RenderArgs {
-    /// A scene file (.toml .obj .ply .gltf .glb) or builtin:NAME
-    #[arg(value_name = "SCENE")]
-    pub scene: String,
+    #[command(flatten)]
+    pub picture: PictureArgs,
     /// Write here; .png or .exr, as often as you like [default: SCENE.png and SCENE.exr in the current folder]
     ///
     /// Folders are created. PNG is exposed and tone-mapped. EXR holds radiance and the layers direct, indirect, albedo,
@@ -326,59 +323,12 @@ pub struct RenderArgs {
     #[arg(short, long = "output", value_name = "FILE")]
     pub outputs: Vec<PathBuf>,
 
-    /// Rendering method
-    #[arg(long, value_name = "NAME", env = "TWINLIGHT_METHOD", help_heading = "Quality")]
-    pub method: Option<MethodName>,
-    /// Width and height, pixels [default: the scene's, else 512x512]
-    #[arg(long, value_name = "WxH", env = "TWINLIGHT_SIZE", help_heading = "Quality")]
-    pub size: Option<Size>,
-    /// Samples per pixel [default: the scene's, else 64; unlimited with --time]
-    #[arg(long, value_name = "N", env = "TWINLIGHT_SPP", help_heading = "Quality", allow_negative_numbers = true,
-          value_parser = clap::value_parser!(u32).range(1..=16_777_216))]
-    pub spp: Option<u32>,
     /// Stop after this many seconds, but not before every pixel has a sample
     ///
     /// With --spp, whichever comes first. The number of samples then depends on the machine, and the picture with it.
     #[arg(long, value_name = "SECONDS", env = "TWINLIGHT_TIME", help_heading = "Quality", value_parser = seconds,
           allow_negative_numbers = true)]
     pub time: Option<f64>,
-    /// Times light may scatter: 0 shows emitters alone, 1 direct light, `unlimited` everything [default: the scene's, else
-    /// unlimited]; --method voxel gathers up to 64 times, and 3 times for `unlimited`
-    #[arg(
-        long,
-        value_name = "N",
-        env = "TWINLIGHT_BOUNCES",
-        help_heading = "Quality",
-        allow_negative_numbers = true
-    )]
-    pub bounces: Option<Bounces>,
-    /// Seed of the random numbers: same seed, same picture
-    #[arg(
-        long,
-        value_name = "N",
-        env = "TWINLIGHT_SEED",
-        help_heading = "Quality",
-        allow_negative_numbers = true
-    )]
-    pub seed: Option<u32>,
-    /// Where random numbers come from
-    #[arg(
-        long,
-        value_name = "NAME",
-        env = "TWINLIGHT_SAMPLER",
-        default_value = "sobol",
-        help_heading = "Quality"
-    )]
-    pub sampler: SamplerName,
-
-    // The brackets are clap's help text, no link.
-    #[allow(rustdoc::broken_intra_doc_links)]
-    /// Camera as "px,py,pz tx,ty,tz [ux,uy,uz] vfov": position, target, up (+Y), vertical field of view in degrees
-    #[arg(long, value_name = "CAMERA", allow_hyphen_values = true, help_heading = "Picture")]
-    pub camera: Option<CameraArg>,
-    #[command(flatten, next_help_heading = "Picture")]
-    pub tone: ToneArgs,
-
     /// Render these frames of a scene that moves, each to files of its own
     ///
     /// FIRST up to but without END; without END, to the end of the motion. Frame N shows the scene at N/fps seconds.
@@ -398,25 +348,8 @@ pub struct RenderArgs {
     #[arg(long = "loop", help_heading = "Motion")]
     pub looped: bool,
 
-    /// Where kernels run: auto, cpu, gpu, or gpu:SELECTOR (see `twinlight devices`)
-    ///
-    /// auto takes a hardware GPU if there is one, else the CPU; software adapters (lavapipe, SwiftShader) only run when
-    /// asked for by gpu or gpu:SELECTOR. SELECTOR is a number or part of a name.
-    #[arg(
-        long,
-        value_name = "BACKEND",
-        env = "TWINLIGHT_BACKEND",
-        default_value = "auto",
-        help_heading = "Device"
-    )]
-    pub backend: BackendChoice,
-    /// Float arithmetic of a GPU: strict gives the CPU's bits [default: strict where the adapter can]
-    #[arg(long, value_name = "MODE", env = "TWINLIGHT_MODE", help_heading = "Device")]
-    pub mode: Option<ModeName>,
-    /// Threads of the CPU backend; the picture is the same for any number [default: one per core]
-    #[arg(long, value_name = "N", env = "TWINLIGHT_THREADS", help_heading = "Device", allow_negative_numbers = true,
-          value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub device: DeviceArgs,
     /// How progress is shown, on stderr
     #[arg(
         long,
@@ -427,15 +360,7 @@ pub struct RenderArgs {
     )]
     pub progress: ProgressMode,
 
-    #[command(flatten)]
-    pub slhb: SlhbArgs,
     /// Instead of rendering, draw what the method works with: lhb:VIEW, a hit buffer's layer counts and layers
     #[arg(long, value_name = "WHAT", help_heading = "Method slhb")]
     pub show: Option<Show>,
-
-    #[command(flatten)]
-    pub voxel: VoxelArgs,
-
-    #[command(flatten)]
-    pub load: LoadArgs,
 }

@@ -47,6 +47,7 @@ impl VoxelArgs {
             light_samples: self.light_samples,
             bounces: bounces.unwrap_or(VoxelSettings::default().bounces),
             seed,
+            ..VoxelSettings::default()
         }
     }
 }

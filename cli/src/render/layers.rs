@@ -1,9 +1,9 @@
 //! Pictures from a film and a G-buffer.
 
-use super::run::Surfaces;
 use crate::exit::Failure;
 use twinlight::io::image::LayeredImage;
 use twinlight::kernels::shade_primary::GBufferTexel;
+use twinlight::methods::Surfaces;
 use twinlight::methods::post::image::Image;
 use twinlight::methods::post::tonemap::Display;
 use twinlight::methods::reference::Film;

@@ -18,7 +18,7 @@ use crate::exit::{Failure, Stage};
 use crate::interrupt::Interrupt;
 use crate::report;
 use crate::source::{self, Loaded};
-use job::Job;
+pub use job::Job;
 use moment::{Moment, Plan};
 use output::Outputs;
 use passes::Stop;
@@ -33,14 +33,15 @@ use twinlight::methods::post::tonemap;
 /// Everything in [`Failure`] but comparisons.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
-    let tone = tonemap::Display::new(args.tone.exposure, args.tone.tonemap).map_err(Failure::Pictures)?;
+    let tone = tonemap::Display::new(args.picture.tone.exposure, args.picture.tone.tonemap)
+        .map_err(Failure::Pictures)?;
     if let Some(show) = args.show {
-        let loaded = source::load(&args.scene, &args.load, args.camera.map(|c| c.0))?;
+        let loaded = source::load(&args.picture.scene, &args.picture.load, args.picture.camera.map(|c| c.0))?;
         let prepared = loaded.at(args.at.unwrap_or(0.0))?;
-        return show::run(args, &prepared, &Job::new(args, &prepared)?, show);
+        return show::run(args, &prepared, show);
     }
-    let outputs = Outputs::plan(&args.outputs, &source::stem(&args.scene))?;
-    let loaded = source::load(&args.scene, &args.load, args.camera.map(|c| c.0))?;
+    let outputs = Outputs::plan(&args.outputs, &source::stem(&args.picture.scene))?;
+    let loaded = source::load(&args.picture.scene, &args.picture.load, args.picture.camera.map(|c| c.0))?;
     let moment = match Plan::new(args, &loaded.scene)? {
         Plan::Still => None,
         Plan::Moment(moment) => Some(moment),
@@ -70,7 +71,7 @@ fn picture(
              another moment"
         ));
     }
-    let job = Job::new(args, &prepared)?;
+    let job = Job::new(&args.picture, args.time, &prepared)?;
     outputs.prepare_folders()?;
     let mut studio = Studio::open(args, tone, watch()?)?;
     let rendered = studio.render(&prepared, &job, &mut progress::Display::new(args.progress, None))?;

@@ -46,9 +46,10 @@ impl Plan {
             let flags =
                 [("--frames", args.frames.is_some()), ("--at", args.at.is_some()), ("--loop", args.looped)];
             return match flags.into_iter().find(|(_, given)| *given) {
-                Some((flag, _)) => {
-                    Err(Failure::Usage(format!("nothing moves in '{}': leave out {flag}", args.scene)))
-                }
+                Some((flag, _)) => Err(Failure::Usage(format!(
+                    "nothing moves in '{}': leave out {flag}",
+                    args.picture.scene
+                ))),
                 None => Ok(Self::Still),
             };
         }

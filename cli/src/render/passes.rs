@@ -3,10 +3,8 @@
 
 use super::job::Job;
 use std::time::{Duration, Instant};
-use twinlight::methods::reference::{self, Control, Film, Progress, Settings, StopReason};
-use twinlight::methods::slhb::{self, Buffers};
-use twinlight::scene::CompiledScene;
-use twinlight::{Backend, Error, Result};
+use twinlight::methods::reference::{Control, Film, Progress, Rendered, Settings, StopReason};
+use twinlight::{Error, Result};
 
 /// What a lost device may cost: batches grow until they take this long.
 const BATCH: Duration = Duration::from_secs(10);
@@ -62,16 +60,13 @@ impl Taken {
     }
 }
 
-/// Samples the job. `interrupted` is asked, and `observe` told, after every pass.
+/// Takes the samples of a job, which `sampled` makes. `interrupted` is asked, and `observe` told, after every pass.
 ///
 /// # Errors
-/// Those of [`reference::render`]; a device lost in the first batch.
-pub fn take<B: Backend>(
-    backend: &B,
-    resident: &B::Scene,
-    scene: &CompiledScene,
-    buffers: Option<&Buffers<B>>,
+/// Those of `sampled`; a device lost in the first batch.
+pub fn take(
     job: &Job,
+    sampled: impl Fn(&Settings, &mut dyn FnMut(Progress) -> Control) -> Result<Rendered>,
     interrupted: impl Fn() -> Option<i32>,
     mut observe: impl FnMut(Progress),
 ) -> Result<Taken> {
@@ -80,23 +75,18 @@ pub fn take<B: Backend>(
     let (mut taken, mut batch, mut fraction) = (0, 1, 0.0_f64);
     let out_of_time = || job.time.is_some_and(|limit| start.elapsed() >= limit);
     let (stop, lost) = loop {
-        let samples = batch.min(job.settings.samples - taken);
-        let part = Settings { first_sample: taken, samples, time: None, ..job.settings.clone() };
+        let samples = batch.min(job.settings().samples - taken);
+        let part = Settings { first_sample: taken, samples, time: None, ..job.settings().clone() };
         // A picture with holes is no picture: time counts once every pixel has a sample.
         let may_time_out = sum.is_some();
         let batch_start = Instant::now();
-        let observe = |progress: Progress| {
+        let mut observe = |progress: Progress| {
             fraction = fraction.max(share(job, taken, &progress, start.elapsed()));
             observe(Progress { fraction, samples: taken + progress.samples, elapsed: start.elapsed() });
             let stop = interrupted().is_some() || (may_time_out && out_of_time());
             if stop { Control::Stop } else { Control::Continue }
         };
-        let camera = &job.camera;
-        let rendered = match buffers {
-            None => reference::render(backend, resident, scene, camera, &part, observe),
-            Some(buffers) => slhb::render(backend, resident, scene, buffers, camera, &part, observe),
-        };
-        let rendered = match rendered {
+        let rendered = match sampled(&part, &mut observe) {
             Ok(rendered) => rendered,
             Err(lost @ Error::DeviceLost { .. }) if sum.is_some() => break (Stop::DeviceLost, Some(lost)),
             Err(error) => return Err(error),
@@ -107,7 +97,7 @@ pub fn take<B: Backend>(
         }
         taken += samples;
         let signal = interrupted();
-        if rendered.stop == StopReason::Samples && taken == job.settings.samples {
+        if rendered.stop == StopReason::Samples && taken == job.settings().samples {
             break (Stop::Samples, None);
         } else if let Some(signal) = signal {
             break (Stop::Signal(signal), None);
@@ -124,8 +114,8 @@ pub fn take<B: Backend>(
 
 /// How much is done: of the samples or of the time, whichever ends first.
 fn share(job: &Job, taken: u32, progress: &Progress, elapsed: Duration) -> f64 {
-    let samples = f64::from(taken) + progress.fraction * f64::from(job.settings.samples - taken).min(1.0);
-    let by_samples = samples / f64::from(job.settings.samples);
+    let samples = f64::from(taken) + progress.fraction * f64::from(job.settings().samples - taken).min(1.0);
+    let by_samples = samples / f64::from(job.settings().samples);
     let by_time = job.time.map_or(0.0, |limit| elapsed.as_secs_f64() / limit.as_secs_f64());
     by_samples.max(by_time).min(1.0)
 }
@@ -133,7 +123,10 @@ fn share(job: &Job, taken: u32, progress: &Progress, elapsed: Duration) -> f64 {
 #[cfg(all(test, feature = "gpu"))]
 mod tests {
     use super::*;
+    use twinlight::Backend;
     use twinlight::gpu::{DeviceOptions, GpuBackend};
+    use twinlight::methods::plan::{Effects, Method, Plan, Request};
+    use twinlight::methods::reference;
     use twinlight::scene::{Camera, Limits, compile};
 
     fn open() -> Option<GpuBackend> {
@@ -153,15 +146,11 @@ mod tests {
         let scene = twinlight::fixtures::scenes::builtin("cornell").unwrap();
         let compiled = compile(&scene, &Limits::default()).unwrap();
         let settings = Settings { width: 16, height: 16, samples: 64, ..Settings::default() };
-        let job = Job {
-            method: crate::args::MethodName::Reference,
-            lookups: slhb::LookupSettings::default(),
-            filter: 1,
-            voxels: twinlight::methods::voxel::VoxelSettings::default(),
-            settings,
-            time: None,
-            camera: Camera::of_scene(&scene).unwrap(),
-        };
+        let camera = Camera::of_scene(&scene).unwrap();
+        let request =
+            Request { method: Method::Reference, picture: settings, effects: Effects::Auto, tolerance: 0.0 };
+        let plan = Plan::new(&compiled, &camera, &request).unwrap();
+        let job = Job { plan, plan_time: Duration::ZERO, time: None, camera };
         // Batches have 1, 2, 4 … samples.
         for (lost_at, saved) in [(1, 0), (3, 1), (4, 3)] {
             let Some(gpu) = open() else { return };
@@ -171,7 +160,10 @@ mod tests {
                     gpu.device().destroy();
                 }
             };
-            let taken = take(&gpu, &resident, &compiled, None, &job, || None, destroy);
+            let sampled = |settings: &Settings, observe: &mut dyn FnMut(Progress) -> Control| {
+                reference::render(&gpu, &resident, &compiled, &job.camera, settings, observe)
+            };
+            let taken = take(&job, sampled, || None, destroy);
             if saved == 0 {
                 assert!(matches!(taken, Err(Error::DeviceLost { .. })));
                 continue;
@@ -179,7 +171,7 @@ mod tests {
             let taken = taken.unwrap();
             assert_eq!(taken.stop, Stop::DeviceLost);
             assert!(matches!(taken.lost, Some(Error::DeviceLost { .. })));
-            let settings = Settings { samples: saved, ..job.settings.clone() };
+            let settings = Settings { samples: saved, ..job.settings().clone() };
             let Some(new) = open() else { return };
             let resident = new.upload_scene(&compiled).unwrap();
             let expected =

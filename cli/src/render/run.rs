@@ -3,7 +3,7 @@
 use super::job::Job;
 use super::passes::{self, Stop, Taken};
 use super::progress::Display;
-use crate::args::{MethodName, RenderArgs};
+use crate::args::RenderArgs;
 use crate::device::Device;
 use crate::exit::{Failure, Stage};
 use crate::interrupt::Interrupt;
@@ -12,14 +12,12 @@ use std::time::{Duration, Instant};
 use twinlight::cpu::CpuBackend;
 #[cfg(feature = "gpu")]
 use twinlight::gpu::GpuBackend;
-use twinlight::kernels::shade_primary::GBufferTexel;
-use twinlight::methods::gbuffer;
-use twinlight::methods::reference::Film;
-use twinlight::methods::{slhb, voxel};
+use twinlight::methods::reference::{Control, Progress, Settings};
+use twinlight::methods::{Surfaces, slhb};
 use twinlight::{Backend, BackendInfo, Error};
 
 /// Hit buffers, for the sidecar.
-pub struct Built {
+pub struct HitBuffers {
     /// To rasterize.
     pub time: Duration,
     /// Lines of the set of directions.
@@ -34,26 +32,6 @@ pub struct Built {
     pub bytes: u64,
     /// Of what is read back of them for lookups.
     pub read_back_bytes: u64,
-}
-
-/// What the camera sees, and what is made with it.
-pub struct Surfaces {
-    /// The G-buffer.
-    pub gbuffer: Vec<GBufferTexel>,
-    /// Time for it.
-    pub gbuffer_time: Duration,
-    /// The picture, where it is more than the samples' mean.
-    pub made: Option<Made>,
-    /// Time for that.
-    pub made_time: Duration,
-}
-
-/// A picture whose indirect light is averaged over pixels, or comes through cones.
-pub struct Made {
-    /// Of both kinds of light.
-    pub radiance: Vec<[f32; 3]>,
-    /// Of indirect light.
-    pub indirect: Vec<[f32; 3]>,
 }
 
 /// Lit voxels, for the sidecar.
@@ -77,7 +55,7 @@ pub struct Done {
     /// What the camera sees, if it was looked at.
     pub surfaces: Option<Surfaces>,
     /// The method's hit buffers, where it has any.
-    pub lookups: Option<Built>,
+    pub lookups: Option<HitBuffers>,
     /// The method's voxels, where it has any.
     pub voxels: Option<Voxelized>,
     /// What ran it.
@@ -113,9 +91,11 @@ pub fn render(
         Device::Cpu(backend) => session.run(backend, &mut kept.cpu, tell),
         #[cfg(feature = "gpu")]
         Device::Gpu(backend) => match session.run(&**backend, &mut kept.gpu, tell) {
-            Err(error) if args.backend == crate::args::BackendChoice::Auto && fits_elsewhere(&error) => {
+            Err(error)
+                if args.device.backend == crate::args::BackendChoice::Auto && fits_elsewhere(&error) =>
+            {
                 tell(format!("{} can't render this, the CPU does: {error}", backend.info().device));
-                session.run(&crate::device::cpu(args.threads)?, &mut kept.cpu, tell)
+                session.run(&crate::device::cpu(args.device.threads)?, &mut kept.cpu, tell)
             }
             other => other,
         },
@@ -144,30 +124,23 @@ impl Session<'_> {
         kept: &mut slhb::Kept<B>,
         tell: &mut impl FnMut(String),
     ) -> twinlight::Result<Done> {
-        let compiled = &self.prepared.compiled;
+        let plan = &self.job.plan;
+        let scene = &*plan.edits.apply(&self.prepared.compiled);
         let start = Instant::now();
-        let resident = backend.upload_scene(compiled)?;
+        let resident = backend.upload_scene(scene)?;
         let upload_time = start.elapsed();
 
-        let buffers = match self.job.method {
-            MethodName::Reference | MethodName::Voxel => None,
-            // Keeping takes memory, and a single picture has no use for it.
-            MethodName::Slhb if self.args.frames.is_none() => {
-                Some(slhb::build(backend, compiled, &self.job.lookups)?)
-            }
-            MethodName::Slhb => Some(kept.build(backend, compiled, &self.job.lookups)?),
-        };
-        let lit = match self.job.method {
-            MethodName::Voxel => Some(voxel::build(backend, &resident, compiled, &self.job.voxels)?),
-            _ => None,
-        };
+        // Keeping takes memory, and a single picture has no use for it.
+        let kept = self.args.frames.is_some().then_some(kept);
+        let built = plan.build(backend, &resident, scene, kept)?;
+        let lit = &built.voxels;
         if let Some(lit) = lit.as_ref().filter(|lit| lit.saturated > 0) {
             let (saturated, all) = (lit.saturated, lit.voxels());
             tell(format!(
                 "{saturated} of {all} voxels are too bright for their integers: light is missing near lamps"
             ));
         }
-        let lookups = buffers.as_ref().map(|buffers| Built {
+        let lookups = built.buffers.as_ref().map(|buffers| HitBuffers {
             time: buffers.build_time,
             views: buffers.views.len(),
             elements: buffers.elements(backend),
@@ -179,7 +152,10 @@ impl Session<'_> {
 
         let caught = || self.interrupt.caught();
         let observe = |progress| self.display.update(&progress);
-        let taken = passes::take(backend, &resident, compiled, buffers.as_ref(), self.job, caught, observe);
+        let sampled = |settings: &Settings, observe: &mut dyn FnMut(Progress) -> Control| {
+            plan.sample(backend, &resident, scene, &built, &self.job.camera, settings, observe)
+        };
+        let taken = passes::take(self.job, sampled, caught, observe);
         self.display.clear();
         let taken = taken?;
         // Of a sequence, complete frames are saved and no others.
@@ -193,7 +169,9 @@ impl Session<'_> {
         if !wanted && saved {
             tell(format!("{}: the render ended early ({})", self.missing(), taken.stop.name()));
         }
-        let surfaces = match wanted.then(|| self.surfaces(backend, &resident, lit.as_ref(), &taken.film)) {
+        let (camera, film) = (&self.job.camera, &taken.film);
+        let surfaces = wanted.then(|| plan.surfaces(backend, &resident, scene, &built, camera, film));
+        let surfaces = match surfaces {
             None => None,
             Some(Ok(surfaces)) => Some(surfaces),
             // What was sampled is a picture without them.
@@ -217,40 +195,13 @@ impl Session<'_> {
 
     /// What a picture lacks without [`Surfaces`].
     fn missing(&self) -> &'static str {
-        if self.job.method == MethodName::Voxel {
+        let plan = &self.job.plan;
+        if plan.voxels.is_some() {
             "no albedo, normal, depth and id layers, and no indirect light"
-        } else if self.job.filter > 1 {
+        } else if plan.filter > 1 {
             "no albedo, normal, depth and id layers, and indirect light is not filtered"
         } else {
             "no albedo, normal, depth and id layers"
         }
-    }
-
-    fn surfaces<B: Backend>(
-        &self,
-        backend: &B,
-        resident: &B::Scene,
-        lit: Option<&voxel::Lit<B>>,
-        film: &Film,
-    ) -> twinlight::Result<Surfaces> {
-        let (job, compiled) = (self.job, &self.prepared.compiled);
-        let start = Instant::now();
-        let gbuffer = gbuffer(backend, resident, compiled, &job.camera, (film.width(), film.height()))?;
-        let texels = backend.download(&gbuffer)?;
-        let gbuffer_time = start.elapsed();
-        let start = Instant::now();
-        let made = match (lit, job.filter) {
-            (Some(lit), _) => {
-                let gathered =
-                    voxel::gather(backend, compiled, lit, &job.camera, &texels, film, &job.voxels)?;
-                Some(Made { radiance: gathered.radiance, indirect: gathered.indirect })
-            }
-            (None, 1) => None,
-            (None, window) => {
-                let filtered = slhb::filter(backend, compiled, &job.camera, &gbuffer, film, window)?;
-                Some(Made { radiance: filtered.radiance, indirect: filtered.indirect })
-            }
-        };
-        Ok(Surfaces { gbuffer: texels, gbuffer_time, made, made_time: start.elapsed() })
     }
 }

@@ -67,7 +67,7 @@ fn frame(
         return Err(Failure::Signal(signal));
     }
     let prepared = loaded.at(moment.seconds)?;
-    let job = Job::new(args, &prepared)?;
+    let job = Job::new(&args.picture, args.time, &prepared)?;
     let mut rendered = studio.render(&prepared, &job, display)?;
     let taken = &mut rendered.0.taken;
     if let Some(lost) = taken.lost.take() {

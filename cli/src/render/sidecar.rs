@@ -35,23 +35,22 @@ pub fn attributes(
     done: &Done,
     moment: Option<Moment>,
 ) -> Vec<(&'static str, String)> {
-    let settings = &job.settings;
+    let settings = job.settings();
     let mode = if done.info.strict { "strict" } else { "portable" };
     let mut attributes = vec![
         ("version", env!("CARGO_PKG_VERSION").into()),
-        ("scene", source::stem(&args.scene)),
-        ("method", job.method.key().into()),
+        ("scene", source::stem(&args.picture.scene)),
+        ("method", job.plan.request.method.name().into()),
         ("backend", done.info.kind.into()),
         ("adapter", done.info.device.clone()),
         ("mode", mode.into()),
         ("seed", settings.seed.to_string()),
         ("sampler", sampler_name(settings.sampler).into()),
         ("samples", done.taken.samples().0.to_string()),
-        ("bounces", job.bounces().map_or("unlimited".into(), |n| n.to_string())),
+        ("bounces", job.plan.bounces.map_or("unlimited".into(), |n| n.to_string())),
         ("stop", done.taken.stop.name().into()),
     ];
-    attributes.extend(done.voxels.as_ref().map(|_| {
-        let knobs = &job.voxels;
+    attributes.extend(job.plan.voxels.as_ref().map(|knobs| {
         let what = format!(
             "grid {}, storage {}, cones {}, light samples {}",
             knobs.grid, knobs.storage, knobs.cones, knobs.light_samples
@@ -73,53 +72,58 @@ pub fn json(
     notices: &[String],
     times: &Times,
 ) -> String {
-    let (settings, camera) = (&job.settings, &job.camera);
+    let (settings, camera, plan) = (job.settings(), &job.camera, &job.plan);
     let (least, most) = done.taken.samples();
     let seconds = |d: Duration| (d.as_secs_f64() * 1e6).round_ties_even() / 1e6;
     let pixels = u64::from(settings.width) * u64::from(settings.height);
     let kernel = if done.lookups.is_some() { "walk_lhb" } else { "trace_paths" };
-    let packed = done.lookups.as_ref().filter(|_| job.lookups.elements != Elements::Full);
+    let packed = done
+        .lookups
+        .as_ref()
+        .filter(|_| plan.buffers.as_ref().is_some_and(|lookups| lookups.elements != Elements::Full));
     let made = done.surfaces.as_ref().filter(|surfaces| surfaces.made.is_some());
     let voxels = done.voxels.as_ref();
     let (filtered, gathered) = if voxels.is_some() { (None, made) } else { (made, None) };
     let value = json!({
         "twinlight": env!("CARGO_PKG_VERSION"),
-        "scene": { "source": args.scene, "triangles": prepared.scene.triangle_count() },
+        "scene": { "source": args.picture.scene, "triangles": prepared.scene.triangle_count() },
         "moment": moment.map(|m| json!({ "seconds": m.seconds, "frame": m.frame })),
         "files": outputs.pictures().map(|p| p.display().to_string()).collect::<Vec<_>>(),
         "settings": {
-            "method": job.method.key(),
-            "slhb": done.lookups.as_ref().map(|_| json!({
-                "directions": job.lookups.directions.to_string(),
-                "size": job.lookups.size,
-                "layers": job.lookups.layers,
-                "elements": job.lookups.elements.to_string(),
-                "cone": job.lookups.cone,
-                "gather": job.lookups.gather,
-                "trace_misses": job.lookups.trace_misses,
-                "shadows": args.slhb.shadows.key(),
-                "interleave": job.lookups.interleave,
-                "filter": job.filter,
+            "method": job.plan.request.method.name(),
+            "slhb": plan.buffers.as_ref().map(|lookups| json!({
+                "directions": lookups.directions.to_string(),
+                "size": lookups.size,
+                "layers": lookups.layers,
+                "elements": lookups.elements.to_string(),
+                "cone": lookups.cone,
+                "gather": lookups.gather,
+                "trace_misses": lookups.trace_misses,
+                "shadows": args.picture.slhb.shadows.key(),
+                "interleave": lookups.interleave,
+                "filter": plan.filter,
             })),
-            "voxel": voxels.map(|_| json!({
-                "grid": job.voxels.grid,
-                "storage": job.voxels.storage.to_string(),
-                "cones": job.voxels.cones.to_string(),
-                "light_samples": job.voxels.light_samples,
-                "bounces": job.voxels.bounces,
+            "voxel": plan.voxels.as_ref().map(|knobs| json!({
+                "grid": knobs.grid,
+                "storage": knobs.storage.to_string(),
+                "cones": knobs.cones.to_string(),
+                "light_samples": knobs.light_samples,
+                "bounces": knobs.bounces,
             })),
+            "effects": plan.request.effects.to_string(),
+            "tolerance": plan.request.tolerance,
             "size": [settings.width, settings.height],
-            "spp": args.spp.or(job.time.is_none().then_some(settings.samples)),
+            "spp": args.picture.spp.or(job.time.is_none().then_some(settings.samples)),
             "time_s": job.time.map(seconds),
-            "bounces": job.bounces(),
+            "bounces": job.plan.bounces,
             "seed": settings.seed,
             "sampler": sampler_name(settings.sampler),
             "camera": {
                 "position": camera.position, "target": camera.target, "up": camera.up,
                 "vfov": camera.vfov_degrees
             },
-            "exposure": args.tone.exposure,
-            "tonemap": args.tone.tonemap.key(),
+            "exposure": args.picture.tone.exposure,
+            "tonemap": args.picture.tone.tonemap.key(),
         },
         "backend": {
             "kind": done.info.kind,
@@ -127,6 +131,7 @@ pub fn json(
             "driver": done.info.driver,
             "mode": if done.info.strict { "strict" } else { "portable" },
         },
+        "plan": crate::plan::effects_json(plan),
         "result": {
             "stop": done.taken.stop.name(),
             "lhb_views": done.lookups.as_ref().map(|built| built.views),
@@ -139,6 +144,7 @@ pub fn json(
         "seconds": {
             "load": seconds(prepared.load_time),
             "compile": seconds(prepared.compile_time),
+            "plan": seconds(job.plan_time),
             "upload": seconds(done.upload_time),
             "rasterize_lhb": done.lookups.as_ref().map(|built| seconds(built.time)),
             "pack_lhb": packed.map(|built| seconds(built.pack_time)),

@@ -37,9 +37,9 @@ impl<'a> Studio<'a> {
     /// # Errors
     /// Those of [`device::open`].
     pub fn open(args: &'a RenderArgs, tone: Display, interrupt: Interrupt) -> Result<Self, Failure> {
-        let (device, unavailable) = device::open(&args.backend, args.mode, args.threads)?;
+        let (device, unavailable) = device::open(&args.device)?;
         let mut about_device: Vec<String> = unavailable.into_iter().collect();
-        if args.mode == Some(ModeName::Portable) && matches!(device, Device::Cpu(_)) {
+        if args.device.mode == Some(ModeName::Portable) && matches!(device, Device::Cpu(_)) {
             let notice =
                 "--mode portable is for GPUs: the CPU, which renders this, always computes as in strict mode";
             about_device.push(notice.into());

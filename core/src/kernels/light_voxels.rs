@@ -14,7 +14,7 @@
 //! 2. *Samples.* For s from 0 to [`LightVoxelsBlock::samples`] − 1: a light and a point on it as `trace_paths` choose them, seen from c, from the pairs 0 (point), 1 (light)
 //!    and 2 (texel) of the Sobol sequence of stream `mix_pair(seed, code)`, sample s.
 //! 3. *Shadow.* The ray begins at o = c + n·(±[`LIFT`] voxels), on the light's side of the surface, or at c without a normal, and ends at the light as shadow
-//!    rays of `trace_paths` do.
+//!    rays of `trace_paths` do; none is sent where the scene says so ([`crate::scene::NOTHING_HIDES`]).
 //! 4. *Irradiance.* E += emission · |n·ω| / pdf where nothing is in between; ω is the direction from c. Without a normal ½ stands for the
 //!    cosine, its mean over all normals.
 //! 5. *Leaf.* L = (`albedo`·((1/(`count`·4095))·(1/π)))·(E·(1/samples) + `gathered`) + `emission`·([`LightVoxelsBlock::emission_unit`]/`count`), in this

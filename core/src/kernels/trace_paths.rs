@@ -14,7 +14,8 @@
 //! 2. *Vertex.* Emission met by a scattered ray is weighted by the balance heuristic against the light sampler's pdf;
 //!    at the first vertex and after mirrors and glass its weight is 1.
 //! 3. *Direct light.* One light, chosen by power with an alias table, one point on it, one shadow ray, weighted by the
-//!    balance heuristic against the BSDF's pdf (delta lights: weight 1).
+//!    balance heuristic against the BSDF's pdf (delta lights: weight 1). Where the scene says so
+//!    ([`crate::scene::NOTHING_HIDES`]), no ray is sent and no triangle shadows anything; sphere lights still do.
 //! 4. *Scatter.* BSDF sample, [`crate::transport::bsdf`].
 //! 5. *Roulette* from vertex `roulette_begin` on, survival min(max component of throughput, 0.95).
 //!

@@ -31,7 +31,7 @@
 //!    of an integral over drawn ones: sample s goes along direction s mod D, with the weight D·Ω·f·cos θ, Ω the solid angle that is nearer to
 //!    it than to others, and ends where that does not leave the surface. With a multiple of D samples each direction has the same
 //!    share. Its density in 3 is that of scattering, as if it had been drawn: the weights still add up to 1.
-//! 6. *Shadows.* With [`SHADOW_LOOKUPS`], the shadow rays of every vertex but the first are looked up as rays of 1 are, whatever
+//! 6. *Shadows.* Where the scene says so ([`crate::scene::NOTHING_HIDES`]) triangles cast none. Else with [`SHADOW_LOOKUPS`], the shadow rays of every vertex but the first are looked up as rays of 1 are, whatever
 //!    [`TRACE_MISSES`] says, but for a second line that crosses the ray at its end where the first line finds nothing nearer; with
 //!    [`SHADOW_LOOKUPS_FIRST`] too, those of the first as well: the hit buffers are the shadow maps of all lights at once. With L the
 //!    distance to the sampled point of the light, the light is shadowed where the lookup finds a triangle which the ray meets before

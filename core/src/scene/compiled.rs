@@ -34,6 +34,9 @@ pub const HAS_TEXCOORDS: u32 = 2;
 /// [`MaterialRecord::flags`]: the back face emits too.
 pub const EMITS_BOTH_SIDES: u32 = 1;
 
+/// [`EnvironmentHeader::flags`]: no triangle hides a light from another, or it is to be as if: kernels send no shadow rays.
+pub const NOTHING_HIDES: u32 = 1;
+
 /// The first words of [`CompiledScene::words`] decode an sRGB byte to linear light.
 pub const SRGB_TABLE_LEN: u32 = 256;
 
@@ -148,8 +151,10 @@ pub struct EnvironmentHeader {
     pub light_count: u32,
     /// Number of sphere lights, the first of the list.
     pub sphere_count: u32,
+    /// [`NOTHING_HIDES`].
+    pub flags: u32,
     /// Unused, 0.
-    pub padding: [u32; 2],
+    pub padding: u32,
 }
 
 /// A validated scene in world space, ready for any backend.

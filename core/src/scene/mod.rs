@@ -16,8 +16,8 @@ pub use compile::compile;
 pub use compiled::{
     CompiledScene, EMITS_BOTH_SIDES, EnvironmentHeader, HAS_NORMALS, HAS_TEXCOORDS, LIGHT_DIRECTIONAL,
     LIGHT_ENVIRONMENT, LIGHT_POINT, LIGHT_SPHERE, LIGHT_SPOT, LIGHT_TRIANGLE, LightRecord,
-    MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_OPAQUE, MaterialRecord, NONE, SRGB_TABLE_LEN,
-    TriangleAttributes,
+    MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_OPAQUE, MaterialRecord, NONE, NOTHING_HIDES,
+    SRGB_TABLE_LEN, TriangleAttributes,
 };
 pub use environment::Environment;
 pub use light::Light;

@@ -57,7 +57,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    pub(super) fn params(&self, camera: &Camera, scene: &CompiledScene) -> Result<TracePathsParams> {
+    pub(crate) fn params(&self, camera: &Camera, scene: &CompiledScene) -> Result<TracePathsParams> {
         let size = 1..=16384;
         if !size.contains(&self.width) || !size.contains(&self.height) {
             let what = format!("{}x{} is not within 1x1 and 16384x16384", self.width, self.height);

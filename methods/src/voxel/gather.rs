@@ -46,7 +46,9 @@ pub fn gather<B: Backend>(
     let mut indirect = vec![[0.0; 3]; gbuffer.len()];
     if settings.bounces > 1 {
         diffuse(backend, scene, lit, gbuffer, eye, settings, &mut indirect)?;
-        glossy(backend, scene, lit, gbuffer, eye, &mut indirect)?;
+        if settings.shining {
+            glossy(backend, scene, lit, gbuffer, eye, &mut indirect)?;
+        }
     }
     let add = |(direct, indirect): ([f32; 3], &[f32; 3])| [0, 1, 2].map(|c| direct[c] + indirect[c]);
     let radiance = film.direct().into_iter().zip(&indirect).map(add).collect();
@@ -54,7 +56,7 @@ pub fn gather<B: Backend>(
 }
 
 /// Cones that are traced together: 48 bytes each, here and on the device.
-const CONES_AT_ONCE: usize = 1 << 20;
+pub(crate) const CONES_AT_ONCE: usize = 1 << 20;
 
 /// Pixels whose surface's material is as asked.
 fn pixels<'a>(

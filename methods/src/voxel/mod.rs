@@ -14,6 +14,7 @@ mod settings;
 mod surfaces;
 
 pub use build::{Lit, build};
+pub(crate) use gather::CONES_AT_ONCE;
 pub use gather::{Gathered, gather};
 pub use settings::{Cones, MAX_BOUNCES, Storage, VoxelSettings};
 pub use surfaces::{VoxelSurfaces, surfaces};

@@ -109,6 +109,8 @@ pub struct VoxelSettings {
     /// How often light is scattered, the camera's vertex and those in voxels together: 2 is light from lit voxels, every one more is
     /// gathered by the voxels themselves, up to [`MAX_BOUNCES`]. With 0 and 1 nothing is gathered.
     pub bounces: u32,
+    /// Whether cones gather what lobes and mirrors reflect.
+    pub shining: bool,
     /// Seed of the voxels' light samples.
     pub seed: u32,
 }
@@ -121,6 +123,7 @@ impl Default for VoxelSettings {
             cones: Cones::Six,
             light_samples: 8,
             bounces: 3,
+            shining: true,
             seed: 0,
         }
     }

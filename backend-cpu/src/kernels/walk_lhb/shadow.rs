@@ -3,7 +3,7 @@
 use super::order::Order;
 use super::{Leaves, Leaving, Walker, Wave};
 use crate::kernels::query_lhb::BATCH;
-use crate::path::{DirectLight, add_light};
+use crate::path::{DirectLight, add_light, nothing_hides};
 use crate::simd::{Width, prefetch};
 use glam::Vec3;
 use twinlight_core::kernels::walk_lhb::{SHADOW_LOOKUPS, SHADOW_LOOKUPS_FIRST};
@@ -66,7 +66,8 @@ impl<W: Width> Wave<'_, W> {
     #[inline(always)]
     pub(super) fn shadows_are_looked_up(&self, vertex: u32) -> bool {
         let flags = self.params.lookup.flags;
-        flags & SHADOW_LOOKUPS != 0 && (vertex > 0 || flags & SHADOW_LOOKUPS_FIRST != 0)
+        let is_looked_up = flags & SHADOW_LOOKUPS != 0 && (vertex > 0 || flags & SHADOW_LOOKUPS_FIRST != 0);
+        is_looked_up && !nothing_hides(&self.scene)
     }
 
     /// Leaves light for [`Wave::add_waiting`]. False where there is no direction to look up, which the tracer sees to.
