@@ -216,6 +216,7 @@ faults! {
         PathsLoseSpread "squares are not summed",
         PathsCountTwice "one sample too many is counted",
         PathsSwapChannels "red and blue change places",
+        PathsShadowsAnyway "triangles shadow where the scene says that they don't",
         PathsReject "sound samples are counted as rejected",
         PathsAcceptAnything "parameters are not checked";
     "walk_lhb":
@@ -247,6 +248,7 @@ faults! {
         WalkShadowsFirst "first vertices look shadows up unasked",
         WalkShadowsTraced "shadow rays are traced where lookups are asked for",
         WalkShadowsLast "light that waits at the last vertex of a path is lost",
+        WalkShadowsAnyway "triangles shadow where the scene says that they don't",
         WalkIgnoreFirstSample "sample ranges start at 0",
         WalkOneSample "one sample is taken, however many are asked for",
         WalkIgnoreSeed "the seed is ignored",
@@ -461,6 +463,7 @@ faults! {
         LightNoPi "albedo is not divided by π",
         LightFullWithoutNormal "voxels without a normal face every light",
         LightBlackWithoutNormal "voxels without a normal are black",
+        LightShadowsAnyway "triangles shadow where the scene says that they don't",
         LightNoShadow "nothing is in between",
         LightTrianglesDontShadow "triangles are in nobody's way",
         LightSpheresDontShadow "spheres are in nobody's way",

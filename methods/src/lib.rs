@@ -2,6 +2,7 @@
 //!
 //! [`post`] compares, tone-maps and colours finished images; it knows no backend.
 
+pub mod budget;
 mod gbuffer;
 mod meter;
 pub mod plan;

@@ -18,6 +18,7 @@ fn every_command_has_examples() {
     let folder = Folder::new();
     for command in [
         &["render"][..],
+        &["plan"],
         &["compare"],
         &["conform"],
         &["completions"],

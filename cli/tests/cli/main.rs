@@ -4,6 +4,7 @@ mod compare;
 mod errors;
 mod help;
 mod motion;
+mod plan;
 mod render;
 mod scene;
 mod signals;

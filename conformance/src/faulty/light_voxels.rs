@@ -10,7 +10,7 @@ use twinlight_core::kernels::reduce_mips::{OPAQUE, VoxelLight};
 use twinlight_core::kernels::sum_voxels::VoxelSums;
 use twinlight_core::kernels::trace::Ray;
 use twinlight_core::math::vector::normalized;
-use twinlight_core::scene::CompiledScene;
+use twinlight_core::scene::{CompiledScene, NOTHING_HIDES};
 use twinlight_core::transport::light::{FAR, spheres_occlude};
 use twinlight_core::transport::voxel_light::{
     VoxelPoint, VoxelSample, voxel_leaf, voxel_point, voxel_sample,
@@ -171,7 +171,9 @@ impl Broken<'_> {
             t_max: reach,
         };
         let nothing = self.fault == Fault::LightNoShadow;
-        let triangles = !nothing && self.fault != Fault::LightTrianglesDontShadow;
+        let hides = self.scene.environment.flags & NOTHING_HIDES == 0;
+        let hides = hides || self.fault == Fault::LightShadowsAnyway;
+        let triangles = hides && !nothing && self.fault != Fault::LightTrianglesDontShadow;
         let spheres = !nothing && self.fault != Fault::LightSpheresDontShadow;
         (triangles && occluded_as_written(&self.scene.triangles, &ray) == 1)
             || (spheres && spheres_occlude(view, light.origin, light.direction, reach, light.light))

@@ -10,6 +10,9 @@ use twinlight_core::{Backend, Result};
 /// The scene that a kernel with the bug would effectively render.
 pub(super) fn broken_scene(fault: Fault, scene: &CompiledScene) -> CompiledScene {
     let mut scene = scene.clone();
+    if fault == Fault::PathsShadowsAnyway {
+        scene.environment.flags = 0;
+    }
     for material in &mut scene.materials {
         match fault {
             Fault::PathsAlbedoBias => material.albedo = material.albedo.map(|a| a * 0.97),

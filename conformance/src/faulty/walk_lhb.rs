@@ -18,6 +18,7 @@ pub(super) fn broken_scene(fault: Fault, mut scene: CompiledScene) -> CompiledSc
         Fault::WalkAlbedoBias => {
             scene.materials.iter_mut().for_each(|m| m.albedo = m.albedo.map(|a| a * 0.97));
         }
+        Fault::WalkShadowsAnyway => scene.environment.flags = 0,
         Fault::WalkSpheresUnseen => scene.environment.sphere_count = 0,
         Fault::WalkEnvironmentLost if scene.environment.offset != NONE => {
             scene.words[scene.environment.offset as usize..].fill(0);

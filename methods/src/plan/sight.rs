@@ -30,30 +30,39 @@ pub(super) fn of(scene: &CompiledScene, camera: &Camera, has_glass: bool) -> Sig
     if has_glass {
         return Sight::Some("light goes through glass");
     }
-    let corners = distinct_corners(&triangles);
-    if triangles.len() as u64 * corners.len() as u64 > MOST_PAIRS
-        && rises_above_one_of(&triangles, &corners, (MOST_PAIRS / corners.len() as u64) as usize)
-    {
+    // Most scenes are told by the first triangle, before corners are sorted.
+    let all = || all_corners(&triangles);
+    if triangles.iter().take(FIRST).any(|triangle| heights(triangle, all()).any(|h| h > reach(triangle))) {
         return Sight::Some("a surface rises above the plane of another");
     }
+    let corners = distinct_corners(&triangles);
     if triangles.len() as u64 * corners.len() as u64 > MOST_PAIRS {
         return Sight::Unknown("there are too many surfaces to compare");
     }
-    if triangles.iter().all(|triangle| heights(triangle, &corners).all(|h| h.abs() <= reach(triangle))) {
+    let points = || corners.iter().copied();
+    if triangles.iter().all(|triangle| heights(triangle, points()).all(|h| h.abs() <= reach(triangle))) {
         return Sight::None("all surfaces lie in one plane");
     }
-    if rises_above_one_of(&triangles, &corners, triangles.len()) {
+    if triangles.iter().any(|triangle| heights(triangle, points()).any(|h| h > reach(triangle))) {
         return Sight::Some("a surface rises above the plane of another");
     }
     if !is_closed(&triangles) {
         return Sight::Some("the surface is open, and its inside may be seen");
     }
     let eye = DVec3::from(camera.position) - DVec3::from(scene.origin);
-    let is_outside = |triangle: &&&Triangle| height(triangle, eye) > reach(triangle);
+    let is_outside =
+        |triangle: &&&Triangle| heights(triangle, std::iter::once(eye)).any(|h| h > reach(triangle));
     match triangles.iter().find(is_outside) {
         Some(_) => Sight::None("the surface is convex, and seen from outside"),
         None => Sight::Some("the camera is inside the surface"),
     }
+}
+
+/// Triangles that are looked at first.
+const FIRST: usize = 8;
+
+fn all_corners(triangles: &[&Triangle]) -> impl Iterator<Item = DVec3> {
+    triangles.iter().flat_map(|t| [t.p0, t.p1, t.p2]).map(|p| Vec3::from(p).as_dvec3())
 }
 
 fn distinct_corners(triangles: &[&Triangle]) -> Vec<DVec3> {
@@ -69,22 +78,12 @@ fn reach(triangle: &Triangle) -> f64 {
     f64::from(triangle.offset)
 }
 
-/// Of a point above a triangle's plane, on its front.
-fn height(triangle: &Triangle, point: DVec3) -> f64 {
+/// Of points above a triangle's plane, on its front.
+fn heights(triangle: &Triangle, points: impl Iterator<Item = DVec3>) -> impl Iterator<Item = f64> {
     let [a, b, c] = [triangle.p0, triangle.p1, triangle.p2].map(|p| Vec3::from(p).as_dvec3());
-    // Not by the record's normal, which is rounded: over a large body that would be more than the reach.
-    (b - a).cross(c - a).normalize_or_zero().dot(point - a)
-}
-
-fn heights<'a>(triangle: &'a Triangle, points: &'a [DVec3]) -> impl Iterator<Item = f64> + 'a {
-    let [a, b, c] = [triangle.p0, triangle.p1, triangle.p2].map(|p| Vec3::from(p).as_dvec3());
+    // Not the record's normal, which is rounded: over a large body that would be more than the reach.
     let normal = (b - a).cross(c - a).normalize_or_zero();
-    points.iter().map(move |&point| normal.dot(point - a))
-}
-
-fn rises_above_one_of(triangles: &[&Triangle], corners: &[DVec3], count: usize) -> bool {
-    let rises = |triangle: &&Triangle| heights(triangle, corners).any(|h| h > reach(triangle));
-    triangles.iter().take(count).any(rises)
+    points.map(move |point| normal.dot(point - a))
 }
 
 /// Whether every side of a triangle is one of another, the other way round.

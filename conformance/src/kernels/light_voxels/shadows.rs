@@ -5,13 +5,14 @@ use super::inputs::{point, sun, voxel, voxels, within};
 use crate::trial::{Check, Context, Listing, ensure, list_trials};
 use glam::DVec3;
 use twinlight_core::Backend;
-use twinlight_core::scene::{Light, Mesh};
+use twinlight_core::scene::{Light, Mesh, NOTHING_HIDES};
 use twinlight_fixtures::meshes::{cube, placed, quad};
 
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "light_voxels":
         a_triangle_shadows, what_is_beyond_the_light_does_not, a_sphere_shadows, a_closed_box_is_dark, rays_begin_on_the_lights_side,
         rays_without_normal_begin_in_the_middle, some_of_many_are_dark,
+        nothing_hides_a_light_where_the_scene_says_so,
     );
 }
 
@@ -115,6 +116,21 @@ fn some_of_many_are_dark<B: Backend>(cx: &Context<'_, B>) -> Check {
         let lit = within(meshes.clone(), vec![light], voxels).agreed(cx)?;
         let dark = lit.iter().filter(|leaf| leaf.opacity > 0 && leaf.rgb == [0; 3]).count();
         ensure((20..200).contains(&dark), || format!("{dark} of 400 are dark: the case shows nothing"))?;
+    }
+    Ok(())
+}
+
+fn nothing_hides_a_light_where_the_scene_says_so<B: Backend>(cx: &Context<'_, B>) -> Check {
+    for light in [point([0.3, 3.0, 0.2]), sun([0.1, -1.0, 0.05])] {
+        let case = |meshes| within(meshes, vec![light], vec![voxel([4; 3], [0, 9, 0])]);
+        let open = case(Vec::new()).lit(cx)?;
+        let mut covered = case(vec![plate(1.5, 1.0)]);
+        expect(&[covered.lit(cx)?[0].rgb[0] > 0], &[false], "a plate above")?;
+        covered.scene.environment.flags = NOTHING_HIDES;
+        let leaves = covered.lit(cx)?;
+        ensure(leaves == open, || {
+            format!("{leaves:?} under a plate that hides nothing, {open:?} without one")
+        })?;
     }
     Ok(())
 }

@@ -7,8 +7,9 @@ use crate::scenes::compiled;
 use crate::trial::{Check, Context, Failure, Listing, ensure, list_trials};
 use bytemuck::Zeroable;
 use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsParams};
-use twinlight_core::scene::{CompiledScene, Scene};
+use twinlight_core::scene::{Camera, CompiledScene, Light, Material, NOTHING_HIDES, Scene};
 use twinlight_core::{Backend, Error};
+use twinlight_fixtures::meshes::quad;
 use twinlight_fixtures::scenes;
 
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
@@ -16,6 +17,7 @@ pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
         any_split_gives_the_same_film, sums_carry_and_accumulate, repeated, seeds_and_samples_differ,
         direct_light_ignores_later_bounces, bounces_only_add, image_sizes, parameters_are_checked,
         g9_nothing_and_darkness, t5_no_rejected_sample, t7_camera_in_a_light,
+        nothing_hides_a_light_where_the_scene_says_so,
     );
 }
 
@@ -241,7 +243,7 @@ fn t7_camera_in_a_light<B: Backend>(cx: &Context<'_, B>) -> Check {
     let base = scenes::furnace(0.5, 0.25);
     let sphere = |center: [f32; 3], radius: f32| {
         let mut scene = base.clone();
-        scene.lights.push(twinlight_core::scene::Light::Sphere { center, radius, radiance: [1.0; 3] });
+        scene.lights.push(Light::Sphere { center, radius, radiance: [1.0; 3] });
         scene
     };
     let mut on_wall = base.clone();
@@ -259,4 +261,39 @@ fn t7_camera_in_a_light<B: Backend>(cx: &Context<'_, B>) -> Check {
         ensure(rejected == 0, || format!("{name}: {rejected} samples rejected"))?;
     }
     Ok(())
+}
+
+/// A floor under a point light, and a roof over it or none.
+pub(crate) fn floor_and_roof(has_roof: bool) -> Scene {
+    let mut scene = Scene { materials: vec![Material::diffuse("grey", [0.6; 3])], ..Scene::default() };
+    scene.add_mesh(quad([-2.0, 0.0, 2.0], [2.0, 0.0, 2.0], [2.0, 0.0, -2.0], [-2.0, 0.0, -2.0]));
+    if has_roof {
+        scene.add_mesh(quad([-2.0, 1.0, 2.0], [2.0, 1.0, 2.0], [2.0, 1.0, -2.0], [-2.0, 1.0, -2.0]));
+    }
+    scene.lights.push(Light::Point { position: [0.3, 2.0, 0.2], intensity: [9.0, 6.0, 3.0] });
+    // Under the roof.
+    scene.camera = Some(Camera {
+        position: [0.1, 0.8, 1.5],
+        target: [0.0, 0.0, -0.5],
+        up: [0.0, 1.0, 0.0],
+        vfov_degrees: 40.0,
+    });
+    scene
+}
+
+/// With its shadow rays the roof's floor is dark; without them it is lit as if there were no roof.
+fn nothing_hides_a_light_where_the_scene_says_so<B: Backend>(cx: &Context<'_, B>) -> Check {
+    let films = |has_roof: bool, flags: u32| -> Result<Vec<FilmTexel>, Failure> {
+        let scene = floor_and_roof(has_roof);
+        let mut compiled = compiled(&scene);
+        compiled.environment.flags = flags;
+        let params = params(&scene, &compiled, SIZE, 4, Some(1))?;
+        traced(cx.backend, &compiled, &params)
+    };
+    let (open, under_roof) = (films(false, 0)?, films(true, 0)?);
+    let light = |film: &[FilmTexel]| film.iter().map(|texel| wide(texel.direct[0])).sum::<u64>();
+    ensure(light(&under_roof) == 0 && light(&open) > 0, || {
+        "the roof hides nothing: the trial has no power".into()
+    })?;
+    exact(cx, "as if there were no roof", &films(true, NOTHING_HIDES)?, &open, LINE)
 }

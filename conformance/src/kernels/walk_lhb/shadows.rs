@@ -4,7 +4,7 @@ use super::laws::{LINE, SIZE, mixed};
 use super::{Prepared, walked};
 use crate::compare::{Shape, exact};
 use crate::kernels::trace_paths::film::wide;
-use crate::kernels::trace_paths::laws::any_split;
+use crate::kernels::trace_paths::laws::{any_split, floor_and_roof};
 use crate::kernels::trace_paths::params;
 use crate::oracle::trace_paths::{self as known, Known};
 use crate::scenes::compiled;
@@ -14,13 +14,14 @@ use twinlight_core::kernels::trace_paths::{FilmTexel, SAMPLER_SOBOL, TracePathsP
 use twinlight_core::kernels::walk_lhb::{
     CONE, SHADOW_LOOKUPS, SHADOW_LOOKUPS_FIRST, TRACE_MISSES, WalkLhbBlock, WalkLhbParams,
 };
-use twinlight_core::scene::{Camera, Light, Material, Mesh, Scene};
+use twinlight_core::scene::{Camera, Light, Material, Mesh, NOTHING_HIDES, Scene};
 use twinlight_fixtures::meshes::{quad, with_material};
 
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "walk_lhb":
         lights_that_nothing_shadows, squares_shadow, lines_cross_no_farther_than_the_light, walls_keep_light_out,
         direct_light_keeps_its_shadows, shadows_are_looked_up, any_split_with_shadow_lookups,
+        nothing_hides_a_light_where_the_scene_says_so,
     );
 }
 
@@ -219,4 +220,20 @@ fn any_split_with_shadow_lookups<B: Backend>(cx: &Context<'_, B>) -> Check {
     any_split(cx, &whole, &want, |part, film| {
         prepared.walk_as(cx.backend, &WalkLhbParams { call: *part, lookup }, film)
     })
+}
+
+/// Whether shadow rays would be traced or looked up: without them a floor under a roof is lit, and with them it is not.
+fn nothing_hides_a_light_where_the_scene_says_so<B: Backend>(cx: &Context<'_, B>) -> Check {
+    let scene = floor_and_roof(true);
+    let films = |scene_flags: u32, lookups: u32| -> Result<Vec<FilmTexel>, Failure> {
+        let mut compiled = compiled(&scene);
+        compiled.environment.flags = scene_flags;
+        let call = params(&scene, &compiled, SIZE, 4, Some(1))?;
+        let prepared = Prepared::new(cx.backend, &compiled, "icosahedron:20", 32)?;
+        flagged(cx, &prepared, &call, CONE | lookups)
+    };
+    ensure(light(&films(0, 0)?) == 0, || "the roof hides nothing: the trial has no power".into())?;
+    let lit = films(NOTHING_HIDES, 0)?;
+    ensure(light(&lit) > 0, || "no light comes through".into())?;
+    exact(cx, "with lookups", &films(NOTHING_HIDES, ALL)?, &lit, LINE)
 }
