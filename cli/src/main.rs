@@ -1,6 +1,7 @@
 //! The `twinlight` command.
 
 mod args;
+mod budget;
 mod compare;
 mod conform;
 mod device;

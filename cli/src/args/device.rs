@@ -5,7 +5,7 @@ use super::values::BackendChoice;
 use clap::Args;
 
 /// Where kernels run.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct DeviceArgs {
     /// Where kernels run: auto, cpu, gpu, or gpu:SELECTOR (see `twinlight devices`)
     ///

@@ -7,7 +7,7 @@ use clap::Args;
 use twinlight::methods::plan::Effects;
 
 /// What a picture shows, and how well.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct PictureArgs {
     /// A scene file (.toml .obj .ply .gltf .glb) or builtin:NAME
     #[arg(value_name = "SCENE")]

@@ -1,10 +1,12 @@
 //! `render`.
 
-use super::values::{Bytes, FrameRange, frame_rate, moment, seconds};
+use super::values::{Bytes, FrameRange, flip, frame_rate, moment, seconds};
 use super::{DeviceArgs, PictureArgs};
+use crate::budget::Wish;
 use clap::builder::RangedI64ValueParser;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use std::time::Duration;
 use twinlight::directions::DirectionSet;
 use twinlight::io::LoadOptions;
 use twinlight::kernels::filter_indirect::MAX_WINDOW;
@@ -30,7 +32,7 @@ Ctrl-C ends the render and saves what is finished (exit code 130), of a sequence
 once, nothing is saved.";
 
 /// Where a scene comes from and what it may need.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Reading the scene")]
 pub struct LoadArgs {
     /// Let the scene's files lie in this folder too, beside the scene's own
@@ -69,7 +71,7 @@ impl LoadArgs {
 }
 
 /// How radiance becomes a PNG.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct ToneArgs {
     /// Stops of exposure of PNGs and display metrics; EXR files hold radiance as it is
     #[arg(
@@ -232,7 +234,7 @@ pub enum GatherName {
 }
 
 /// Knobs of the method slhb.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Method slhb")]
 pub struct SlhbArgs {
     /// Directions that hit buffers are built for: a number, or icosahedron:N, octahedron:N, halton:N, uv:ROWSxCOLUMNS
@@ -311,7 +313,7 @@ pub enum ProgressMode {
 
 /// Renders a scene and writes pictures: PNG to look at, EXR with layers to measure, and a JSON file
 /// that says how they were made.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(after_long_help = EXAMPLES, after_help = "`--help` shows examples and explains more.")]
 pub struct RenderArgs {
     #[command(flatten)]
@@ -329,6 +331,20 @@ pub struct RenderArgs {
     #[arg(long, value_name = "SECONDS", env = "TWINLIGHT_TIME", help_heading = "Quality", value_parser = seconds,
           allow_negative_numbers = true)]
     pub time: Option<f64>,
+    /// Choose the method and its knobs for the least error within this many seconds, from the scene as it is read to the picture
+    ///
+    /// By the table that `twinlight cost` wrote of the scene (SCENE-cost/cost.json here, or --costs), else by what was measured in builtin scenes and a short look at
+    /// this one. With --method, knobs of that method. Says what was chosen, and which error is expected.
+    #[arg(long, value_name = "SECONDS", env = "TWINLIGHT_BUDGET", help_heading = "Quality", value_parser = seconds,
+          allow_negative_numbers = true, conflicts_with_all = ["spp", "time", "frames", "show"])]
+    pub budget: Option<f64>,
+    /// Choose the method and its knobs for the least time in which the error is down to this, such as 0.05, as --budget does
+    #[arg(long, value_name = "FLIP", env = "TWINLIGHT_TARGET_FLIP", help_heading = "Quality", value_parser = flip,
+          allow_negative_numbers = true, conflicts_with_all = ["budget", "spp", "time", "frames", "show"])]
+    pub target_flip: Option<f64>,
+    /// The table to choose by: cost.json, or the folder it is in
+    #[arg(long, value_name = "PATH", env = "TWINLIGHT_COSTS", help_heading = "Quality")]
+    pub costs: Option<PathBuf>,
     /// Render these frames of a scene that moves, each to files of its own
     ///
     /// FIRST up to but without END; without END, to the end of the motion. Frame N shows the scene at N/fps seconds.
@@ -363,4 +379,12 @@ pub struct RenderArgs {
     /// Instead of rendering, draw what the method works with: lhb:VIEW, a hit buffer's layer counts and layers
     #[arg(long, value_name = "WHAT", help_heading = "Method slhb")]
     pub show: Option<Show>,
+}
+
+impl RenderArgs {
+    /// What is to be chosen by, if anything is.
+    pub fn wish(&self) -> Option<Wish> {
+        let within = self.budget.map(|seconds| Wish::Within(Duration::from_secs_f64(seconds)));
+        within.or(self.target_flip.map(Wish::Flip))
+    }
 }

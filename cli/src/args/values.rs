@@ -105,6 +105,12 @@ pub fn seconds(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "write seconds above 0, such as 10 or 2.5".into())
 }
 
+/// A mean ꟻLIP, such as 0.05.
+pub fn flip(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|flip| *flip > 0.0 && *flip < 1.0);
+    number.ok_or_else(|| "write a number between 0 and 1, such as 0.05".into())
+}
+
 /// Seconds of a motion, such as `0`, `1.5` or `2s`.
 pub fn moment(text: &str) -> Result<f64, String> {
     let number = text.strip_suffix('s').unwrap_or(text).parse::<f64>();

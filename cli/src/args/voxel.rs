@@ -6,7 +6,7 @@ use twinlight::lattice::MAX_VOXELS;
 use twinlight::methods::voxel::{Cones, Storage, VoxelSettings};
 
 /// Knobs of the method voxel.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Method voxel")]
 pub struct VoxelArgs {
     /// Voxels along the scene's longest side, 1 to 512

@@ -28,8 +28,10 @@ pub struct Job {
     pub plan: Plan,
     /// Time to make the plan.
     pub plan_time: Duration,
-    /// Time limit.
+    /// Time limit of sampling.
     pub time: Option<Duration>,
+    /// When sampling is to end, whenever it began.
+    pub deadline: Option<Instant>,
     /// Where from.
     pub camera: Camera,
 }
@@ -56,7 +58,15 @@ impl Job {
         };
         let start = Instant::now();
         let plan = Plan::new(&prepared.compiled, &camera, &request).map_err(Failure::at(Stage::Input))?;
-        Ok(Self { plan, plan_time: start.elapsed(), time, camera })
+        Ok(Self { plan, plan_time: start.elapsed(), time, deadline: None, camera })
+    }
+
+    /// Everything is to be done at `begin` + `budget`, of which work after sampling takes `after`.
+    pub fn end_by(&mut self, begin: Instant, budget: Duration, after: Duration) {
+        self.deadline = Some(begin + budget.saturating_sub(after));
+        let picture = &mut self.plan.request.picture;
+        // A pass can't be ended: the last one may be a twentieth too long.
+        picture.pass = picture.pass.min(budget / 20);
     }
 
     /// Of the picture.

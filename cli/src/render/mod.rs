@@ -14,6 +14,8 @@ mod studio;
 mod summary;
 
 use crate::args::{ProgressMode, RenderArgs};
+use crate::budget::{self, Wish};
+use crate::device;
 use crate::exit::{Failure, Stage};
 use crate::interrupt::Interrupt;
 use crate::report;
@@ -22,7 +24,7 @@ pub use job::Job;
 use moment::{Moment, Plan};
 use output::Outputs;
 use passes::Stop;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use studio::Studio;
 use twinlight::Error;
 use twinlight::methods::post::tonemap;
@@ -47,7 +49,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         Plan::Moment(moment) => Some(moment),
         Plan::Frames(frames) => {
             sequence::prepare_folders(&outputs, &frames)?;
-            let mut studio = Studio::open(args, tone, watch()?)?;
+            let mut studio = Studio::new(args, tone, device::open(&args.device)?, watch()?);
             return sequence::run(args, &loaded, &frames, &outputs, &mut studio);
         }
     };
@@ -71,9 +73,16 @@ fn picture(
              another moment"
         ));
     }
-    let job = Job::new(&args.picture, args.time, &prepared)?;
+    let begin = Instant::now();
     outputs.prepare_folders()?;
-    let mut studio = Studio::open(args, tone, watch()?)?;
+    let opened = device::open(&args.device)?;
+    let settled = args.wish().map(|wish| budget::settle(args, wish, &prepared, &opened.0)).transpose()?;
+    let args = settled.as_ref().map_or(args, |settled| &settled.args);
+    let mut job = Job::new(&args.picture, args.time, &prepared)?;
+    if let (Some(settled), Some(Wish::Within(budget))) = (&settled, args.wish()) {
+        job.end_by(begin, budget, Duration::from_secs_f64(settled.chosen.after));
+    }
+    let mut studio = Studio::new(args, tone, opened, watch()?);
     let rendered = studio.render(&prepared, &job, &mut progress::Display::new(args.progress, None))?;
     studio.save(&prepared, &job, &rendered, moment, outputs, start)?;
     let done = rendered.0;

@@ -73,7 +73,8 @@ pub fn take(
     let start = Instant::now();
     let mut sum: Option<Film> = None;
     let (mut taken, mut batch, mut fraction) = (0, 1, 0.0_f64);
-    let out_of_time = || job.time.is_some_and(|limit| start.elapsed() >= limit);
+    let is_late = || job.deadline.is_some_and(|deadline| Instant::now() >= deadline);
+    let out_of_time = || is_late() || job.time.is_some_and(|limit| start.elapsed() >= limit);
     let (stop, lost) = loop {
         let samples = batch.min(job.settings().samples - taken);
         let part = Settings { first_sample: taken, samples, time: None, ..job.settings().clone() };
@@ -116,7 +117,9 @@ pub fn take(
 fn share(job: &Job, taken: u32, progress: &Progress, elapsed: Duration) -> f64 {
     let samples = f64::from(taken) + progress.fraction * f64::from(job.settings().samples - taken).min(1.0);
     let by_samples = samples / f64::from(job.settings().samples);
-    let by_time = job.time.map_or(0.0, |limit| elapsed.as_secs_f64() / limit.as_secs_f64());
+    let rest = job.deadline.map(|deadline| elapsed + deadline.saturating_duration_since(Instant::now()));
+    let limit = job.time.or(rest);
+    let by_time = limit.map_or(0.0, |limit| elapsed.as_secs_f64() / limit.as_secs_f64().max(1e-9));
     by_samples.max(by_time).min(1.0)
 }
 
@@ -150,7 +153,7 @@ mod tests {
         let request =
             Request { method: Method::Reference, picture: settings, effects: Effects::Auto, tolerance: 0.0 };
         let plan = Plan::new(&compiled, &camera, &request).unwrap();
-        let job = Job { plan, plan_time: Duration::ZERO, time: None, camera };
+        let job = Job { plan, plan_time: Duration::ZERO, time: None, deadline: None, camera };
         // Batches have 1, 2, 4 … samples.
         for (lost_at, saved) in [(1, 0), (3, 1), (4, 3)] {
             let Some(gpu) = open() else { return };

@@ -8,7 +8,7 @@ use super::progress;
 use super::run::{self, Done, Kept};
 use super::sidecar;
 use crate::args::{ModeName, RenderArgs};
-use crate::device::{self, Device};
+use crate::device::Device;
 use crate::exit::Failure;
 use crate::interrupt::Interrupt;
 use crate::report;
@@ -32,19 +32,20 @@ pub struct Studio<'a> {
 }
 
 impl<'a> Studio<'a> {
-    /// Opens the device.
-    ///
-    /// # Errors
-    /// Those of [`device::open`].
-    pub fn open(args: &'a RenderArgs, tone: Display, interrupt: Interrupt) -> Result<Self, Failure> {
-        let (device, unavailable) = device::open(&args.device)?;
+    /// With a device that is open, and what is to be said about it.
+    pub fn new(
+        args: &'a RenderArgs,
+        tone: Display,
+        (device, unavailable): (Device, Option<String>),
+        interrupt: Interrupt,
+    ) -> Self {
         let mut about_device: Vec<String> = unavailable.into_iter().collect();
         if args.device.mode == Some(ModeName::Portable) && matches!(device, Device::Cpu(_)) {
             let notice =
                 "--mode portable is for GPUs: the CPU, which renders this, always computes as in strict mode";
             about_device.push(notice.into());
         }
-        Ok(Self { args, tone, device, kept: Kept::default(), interrupt, said: BTreeSet::new(), about_device })
+        Self { args, tone, device, kept: Kept::default(), interrupt, said: BTreeSet::new(), about_device }
     }
 
     /// Renders a picture; also gives the notices that are about it.

@@ -113,7 +113,7 @@ pub(crate) fn accumulate<B: Backend>(
     params.check(pixels as usize)?;
     let start = Instant::now();
     let mut sums = backend.zeroed::<FilmTexel>(pixels as usize)?;
-    let mut schedule = Schedule::new(pixels, settings.samples);
+    let mut schedule = Schedule::new(pixels, settings.samples, settings.pass);
     let mut stop = StopReason::Samples;
     while let Some(pass) = schedule.next() {
         params.pixel_begin = pass.pixel_begin;

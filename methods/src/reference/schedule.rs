@@ -1,9 +1,6 @@
-//! Cuts a render into passes of about a quarter of a second, whatever the device's speed.
+//! Cuts a render into passes of about the same time, whatever the device's speed.
 
 use std::time::Duration;
-
-/// What a pass should take: short enough that stopping feels immediate and no driver thinks the device hangs.
-const PASS: Duration = Duration::from_millis(250);
 
 /// A rectangle of pixels and samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,12 +22,14 @@ pub(super) struct Schedule {
     pixel: u32,
     /// Paths (pixels × samples) that should fill one pass.
     paths_per_pass: u64,
+    /// What a pass should take.
+    time: Duration,
 }
 
 impl Schedule {
-    pub(super) fn new(pixels: u32, samples: u32) -> Self {
+    pub(super) fn new(pixels: u32, samples: u32, time: Duration) -> Self {
         // The first pass is small: nothing is known about the device's speed.
-        Self { pixels, samples, sample: 0, sample_count: 1, pixel: 0, paths_per_pass: 4096 }
+        Self { pixels, samples, sample: 0, sample_count: 1, pixel: 0, paths_per_pass: 4096, time }
     }
 
     pub(super) fn next(&mut self) -> Option<Pass> {
@@ -60,7 +59,7 @@ impl Schedule {
     /// Learns from the time a pass took.
     pub(super) fn took(&mut self, pass: &Pass, time: Duration) {
         let paths = u64::from(pass.pixel_count) * u64::from(pass.sample_count);
-        let ratio = PASS.as_secs_f64() / time.as_secs_f64().max(1e-6);
+        let ratio = self.time.as_secs_f64() / time.as_secs_f64().max(1e-6);
         let ideal = (paths as f64 * ratio) as u64;
         // At most four times more at once: the next pixels may be costlier.
         self.paths_per_pass = ideal.clamp(256, self.paths_per_pass.saturating_mul(4)).min(1 << 32);
@@ -88,7 +87,7 @@ mod tests {
     #[test]
     fn passes_cover_every_path_once() {
         for (pixels, samples, milliseconds) in [(1, 1, 1), (7, 13, 900), (10_000, 5, 3), (100, 4096, 40)] {
-            let mut schedule = Schedule::new(pixels, samples);
+            let mut schedule = Schedule::new(pixels, samples, Duration::from_millis(250));
             let mut done = vec![0_u32; pixels as usize];
             let mut fraction = 0.0;
             while let Some(pass) = schedule.next() {

@@ -38,6 +38,9 @@ pub struct Settings {
     pub roulette_begin: u32,
     /// Stop after this long, but not before every pixel has a sample.
     pub time: Option<Duration>,
+    /// What a pass should take, between which a render reports and can be stopped: short enough that stopping feels immediate and no driver thinks that the
+    /// device hangs.
+    pub pass: Duration,
 }
 
 impl Default for Settings {
@@ -52,6 +55,7 @@ impl Default for Settings {
             sampler: Sampler::Sobol,
             roulette_begin: 4,
             time: None,
+            pass: Duration::from_millis(250),
         }
     }
 }
