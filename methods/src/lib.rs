@@ -1,7 +1,8 @@
 //! Light transport methods, each generic over the backend, and what happens to their images afterwards.
 //!
-//! [`post`] compares, tone-maps and colours finished images; it knows no backend.
+//! [`post`] compares, tone-maps and colours finished images; it knows no backend. [`cost`] measures what accuracy takes.
 
+pub mod cost;
 mod gbuffer;
 mod meter;
 pub mod plan;
