@@ -3,6 +3,7 @@
 mod args;
 mod compare;
 mod conform;
+mod cost;
 mod device;
 mod devices;
 mod exit;
@@ -43,6 +44,7 @@ fn run(command: Command) -> Result<(), Failure> {
     match command {
         Command::Render(args) => render::run(&args),
         Command::Plan(args) => plan::run(&args),
+        Command::Cost(args) => cost::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Devices { json } => devices::run(json),
         Command::Scene(command) => scene::run(&command),

@@ -26,7 +26,13 @@ pub struct CostArgs {
     pub scene: String,
 
     /// Measure these methods
-    #[arg(long, value_name = "NAMES", env = "TWINLIGHT_METHODS", value_delimiter = ',', default_value = "reference,slhb,voxel")]
+    #[arg(
+        long,
+        value_name = "NAMES",
+        env = "TWINLIGHT_METHODS",
+        value_delimiter = ',',
+        default_value = "reference,slhb,voxel"
+    )]
     pub methods: Vec<MethodName>,
     /// Write cost.html, cost.json, cost.csv and what later runs go on from to this folder [default: SCENE-cost]
     #[arg(long, value_name = "DIR", env = "TWINLIGHT_OUT")]
@@ -40,7 +46,13 @@ pub struct CostArgs {
     pub quick: bool,
 
     /// Judge by this picture (EXR, PNG or JPEG), whose noise is taken for none, instead of rendering one
-    #[arg(long, value_name = "FILE", env = "TWINLIGHT_REFERENCE", conflicts_with = "reference_spp", help_heading = "Reference")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        env = "TWINLIGHT_REFERENCE",
+        conflicts_with = "reference_spp",
+        help_heading = "Reference"
+    )]
     pub reference: Option<PathBuf>,
     /// Samples per pixel of the reference, in two halves by which its own noise is measured [default: what fits into a third of --time-limit, up to 8192]
     #[arg(long, value_name = "N", env = "TWINLIGHT_REFERENCE_SPP", help_heading = "Reference", allow_negative_numbers = true,
@@ -48,14 +60,33 @@ pub struct CostArgs {
     pub reference_spp: Option<u32>,
 
     /// Width and height, pixels
-    #[arg(long, value_name = "WxH", env = "TWINLIGHT_SIZE", default_value = "128x128", help_heading = "Picture")]
+    #[arg(
+        long,
+        value_name = "WxH",
+        env = "TWINLIGHT_SIZE",
+        default_value = "128x128",
+        help_heading = "Picture"
+    )]
     pub size: Size,
     /// Times light may scatter, of the reference and of every method alike [default: the scene's, else 4]; for `unlimited`, --method voxel
     /// gathers 3 times, and what it lacks is part of its error
-    #[arg(long, value_name = "N", env = "TWINLIGHT_BOUNCES", allow_negative_numbers = true, help_heading = "Picture")]
+    #[arg(
+        long,
+        value_name = "N",
+        env = "TWINLIGHT_BOUNCES",
+        allow_negative_numbers = true,
+        help_heading = "Picture"
+    )]
     pub bounces: Option<Bounces>,
     /// Seed of the random numbers of what is measured; the reference has others
-    #[arg(long, value_name = "N", env = "TWINLIGHT_SEED", default_value_t = 0, allow_negative_numbers = true, help_heading = "Picture")]
+    #[arg(
+        long,
+        value_name = "N",
+        env = "TWINLIGHT_SEED",
+        default_value_t = 0,
+        allow_negative_numbers = true,
+        help_heading = "Picture"
+    )]
     pub seed: u32,
     // The brackets are clap's help text, no link.
     #[allow(rustdoc::broken_intra_doc_links)]
@@ -68,7 +99,13 @@ pub struct CostArgs {
     #[command(flatten)]
     pub device: DeviceArgs,
     /// How progress is shown, on stderr
-    #[arg(long, value_name = "HOW", env = "TWINLIGHT_PROGRESS", default_value = "auto", help_heading = "Device")]
+    #[arg(
+        long,
+        value_name = "HOW",
+        env = "TWINLIGHT_PROGRESS",
+        default_value = "auto",
+        help_heading = "Device"
+    )]
     pub progress: ProgressMode,
 
     #[command(flatten)]

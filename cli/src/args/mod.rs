@@ -2,6 +2,7 @@
 
 mod compare;
 mod conform;
+mod cost;
 mod device;
 mod picture;
 mod plan;
@@ -12,6 +13,7 @@ mod voxel;
 
 pub use compare::CompareArgs;
 pub use conform::ConformArgs;
+pub use cost::CostArgs;
 pub use device::DeviceArgs;
 pub use picture::PictureArgs;
 pub use plan::PlanArgs;
@@ -52,6 +54,8 @@ pub enum Command {
     Render(Box<RenderArgs>),
     /// Say what a render would simulate, what it would leave out, and why
     Plan(Box<PlanArgs>),
+    /// Measure what accuracy costs: which settings of which method are worth their time
+    Cost(Box<CostArgs>),
     /// Compare two pictures: error metrics with their formulas
     Compare(CompareArgs),
     /// Show what kernels can run on: the CPU and GPU adapters

@@ -1,0 +1,62 @@
+//! What measurements depend on beside the setting.
+
+use crate::args::{CostArgs, PictureArgs};
+use crate::source::Prepared;
+use serde_json::{Value, json};
+use twinlight::BackendInfo;
+use twinlight::scene::{Camera, CompiledScene};
+
+/// What identifies the conditions: measurements under others can't be compared. Not the time limit, so that more time goes on with what is there.
+pub fn key(
+    args: &CostArgs,
+    prepared: &Prepared,
+    bounces: Option<u32>,
+    camera: &Camera,
+    usual: &PictureArgs,
+    info: &BackendInfo,
+) -> String {
+    let conditions: Value = json!({
+        "twinlight": env!("CARGO_PKG_VERSION"),
+        "scene": args.scene,
+        "content": format!("{:016x}", scene_digest(&prepared.compiled)),
+        "size": [args.size.0, args.size.1],
+        "bounces": bounces,
+        "seed": args.seed,
+        "camera": format!("{camera:?}"),
+        "tone": format!("{:?}", args.tone),
+        "usual": format!("{:?} {:?} {:?}", usual.effects, usual.tolerance, usual.sampler),
+        "reference": args.reference,
+        "reference_spp": args.reference_spp,
+        "backend": [info.kind, &info.device, &info.driver, if info.strict { "strict" } else { "portable" }],
+    });
+    format!("{:016x}", digest([conditions.to_string().as_bytes()]))
+}
+
+fn scene_digest(scene: &CompiledScene) -> u64 {
+    digest([
+        bytemuck::cast_slice(&scene.triangles),
+        bytemuck::cast_slice(&scene.attributes),
+        bytemuck::cast_slice(&scene.materials),
+        bytemuck::cast_slice(&scene.lights),
+        bytemuck::cast_slice(&scene.words),
+        bytemuck::bytes_of(&scene.environment),
+    ])
+}
+
+/// FNV-1a of 64 bits: it tells edited scenes apart, and is no defence against anybody.
+pub fn digest<const N: usize>(parts: [&[u8]; N]) -> u64 {
+    let bytes = parts.into_iter().flatten();
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::digest;
+
+    /// Known answers of Fowler, Noll and Vo.
+    #[test]
+    fn digests() {
+        assert_eq!(digest([b""]), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(digest([b"foo", b"bar"]), 0x8594_4171_f739_67e8);
+    }
+}
