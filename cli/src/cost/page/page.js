@@ -757,7 +757,9 @@ function drawSteps() {
 }
 
 function hideCutLabels() {
-  for (const label of document.querySelectorAll(".part > span")) label.hidden = label.offsetWidth > label.parentNode.clientWidth;
+  for (const label of document.querySelectorAll(".part > span")) {
+    label.style.visibility = label.offsetWidth > label.parentNode.clientWidth ? "hidden" : "";
+  }
 }
 
 // ------------------------------------------------------------------------------------------------------------- tables
@@ -936,15 +938,11 @@ function followAddress() {
   drawAll();
 }
 
-function watchWidth() {
-  let width = $("plot").clientWidth;
-  new ResizeObserver(() => {
-    if ($("plot").clientWidth === width) return;
-    width = $("plot").clientWidth;
-    drawPlot();
-    drawSteps();
-    markEnlarged();
-  }).observe($("plot"));
+// Between these the drawing scales with its frame; drawn anew, its letters keep their size.
+function followWidth() {
+  drawPlot();
+  hideCutLabels();
+  markEnlarged();
 }
 
 readAddress();
@@ -957,7 +955,7 @@ drawKernels();
 drawKnobs();
 drawAll();
 drawFooter();
-watchWidth();
+window.addEventListener("resize", followWidth);
 window.addEventListener("hashchange", followAddress);
 window.addEventListener("scroll", hideTooltip, { passive: true });
 window.addEventListener("keydown", event => { if (event.key === "Escape") hideTooltip(); });
