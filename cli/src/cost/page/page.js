@@ -19,7 +19,7 @@ const maker = space => (name, attributes = {}, ...children) => {
   for (const [key, value] of Object.entries(attributes)) {
     if (value !== null && value !== undefined && value !== false) node.setAttribute(key, value === true ? "" : value);
   }
-  node.append(...children.flat().filter(child => child !== null));
+  node.append(...children.flat(Infinity).filter(child => child !== null));
   return node;
 };
 const el = maker("http://www.w3.org/1999/xhtml");
@@ -45,6 +45,7 @@ function table(headings, rows) {
 
 // ----------------------------------------------------------------------------------------------------------- numbers
 
+const SPACE = "\u00a0"; // keeps a number and its unit on one line
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 const isNumber = value => typeof value === "number" && Number.isFinite(value);
 const superscript = value => (value < 0 ? "⁻" : "") + [...String(Math.abs(value))].map(digit => SUPERSCRIPTS[digit]).join("");
@@ -56,10 +57,10 @@ function decimal(value, digits = 3) {
   if (!isNumber(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size >= 1e-3 && size < 1e5) return String(Number(value.toPrecision(digits)));
-  const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+  if (size >= 1e-3 && size < 1e5) return String(Number(value.toPrecision(digits))).replace("-", "−");
+  const [mantissa, exponent] = size.toExponential(digits - 1).split("e");
   const power = "10" + superscript(Number(exponent));
-  return Number(mantissa) === 1 ? power : `${Number(mantissa)} × ${power}`;
+  return (value < 0 ? "−" : "") + (Number(mantissa) === 1 ? power : `${Number(mantissa)}${SPACE}×${SPACE}${power}`);
 }
 
 // Close to one, three digits would hide all there is to see.
@@ -67,15 +68,15 @@ const nearOne = value => (isNumber(value) ? value.toFixed(4) : "–");
 
 function time(seconds) {
   if (!isNumber(seconds)) return "–";
-  if (seconds >= 120) return `${decimal(seconds / 60)} min`;
-  if (seconds >= 1 || seconds === 0) return `${decimal(seconds)} s`;
-  return seconds >= 1e-3 ? `${decimal(seconds * 1e3)} ms` : `${decimal(seconds * 1e6)} µs`;
+  if (seconds >= 120) return `${decimal(seconds / 60)}${SPACE}min`;
+  if (seconds >= 1 || seconds === 0) return `${decimal(seconds)}${SPACE}s`;
+  return seconds >= 1e-3 ? `${decimal(seconds * 1e3)}${SPACE}ms` : `${decimal(seconds * 1e6)}${SPACE}µs`;
 }
 
 function memory(bytes) {
   if (!isNumber(bytes)) return "–";
   const power = clamp(Math.floor(Math.log2(Math.max(bytes, 1)) / 10), 0, 4);
-  return `${decimal(bytes / 1024 ** power)} ${["B", "KiB", "MiB", "GiB", "TiB"][power]}`;
+  return `${decimal(bytes / 1024 ** power)}${SPACE}${["B", "KiB", "MiB", "GiB", "TiB"][power]}`;
 }
 
 const spread = seconds =>
@@ -140,23 +141,30 @@ const placedPoints = () => data.points.filter(hasPlace).sort(byTime);
 const frontPoints = () => placedPoints().filter(onFront);
 const pointById = id => data.points.find(point => point.id === id) ?? null;
 
-const writeSettings = settings => settings.map(([flag, setting]) => `${flag} ${setting}`).join(" ");
-
 // The settings that differ among a method's points: the rest would only hide them.
 function tellingSettings(point) {
   const siblings = data.points.filter(other => other.method === point.method);
   const differs = ([flag, setting]) =>
     siblings.some(other => other.settings.some(([name, chosen]) => name === flag && chosen !== setting));
-  return writeSettings(point.settings.filter(differs)) || writeSettings(point.settings);
+  const telling = point.settings.filter(differs);
+  return telling.length > 0 ? telling : point.settings;
 }
 
-const named = point => `${methodTitle(point.method)}, ${tellingSettings(point)}`;
-const pointLink = point =>
-  button([methodTitle(point.method), " ", el("code", {}, tellingSettings(point))], () => select(point, true), { class: "link" });
+// A line may break between the parts, not at a hyphen within one, unless it is too long for a line.
+const LONG_PART = 32;
+const parts = texts => texts.flatMap(text => [el("span", { class: text.length > LONG_PART ? null : "whole" }, text), " "]);
+const settingsCode = settings => el("code", {}, parts(settings.map(setting => setting.join(" "))));
+const commandText = command => el("span", { class: "command" }, parts(command.split(" ")));
 
-function errorFacts(point) {
-  return data.metrics.map(metric =>
+const named = point => `${methodTitle(point.method)}, ${tellingSettings(point).flat().join(" ")}`;
+const pointLink = point =>
+  button([methodTitle(point.method), " ", settingsCode(tellingSettings(point))], () => select(point, true), { class: "link" });
+const markedLink = point => el("div", { class: "marked" }, marker(point.method), pointLink(point));
+
+function pointFactList(point) {
+  const errors = data.metrics.map(metric =>
     [metric.name, value(point, metric) + (point.front.includes(metric.key) ? " · on the front" : "")]);
+  return [["time", spread(point.seconds)], ["memory", memory(point.bytes)], ...errors];
 }
 
 function belowFloor(point) {
@@ -173,7 +181,7 @@ function drawHeader() {
   const bounces = data.bounces === null ? "bounces unlimited" : `at most ${plural(data.bounces, "bounce")}`;
   const { kind, device, driver, mode } = data.backend;
   $("facts").textContent = [plural(data.scene.triangles, "triangle"), `${data.size[0]} × ${data.size[1]} pixels`, bounces,
-    `seed ${data.seed}`, `${kind}, ${mode}: ${device} (${driver})`].join(" · ");
+    `seed ${data.seed}`, `${kind.toUpperCase()}, ${mode}: ${device} (${driver})`].join(" · ");
   $("against").textContent = `${plural(data.points.length, "setting")} of ${plural(data.methods.length, "method")}, each `
     + `measured against a path-traced reference of ${grouped(data.reference.spp)} samples per pixel, `
     + `which took ${time(data.reference.seconds)}.`;
@@ -210,23 +218,24 @@ const MOST_RUNS_TOLD = 4;
 function leadSentence(front) {
   const runs = frontRuns(front);
   const name = distanceName(state.metric);
+  if (data.points.every(point => point.method === front[0].method)) return "";
   if (runs.length === 1) {
-    return `In ${name}, no other method beats the ${methodTitle(runs[0].method)} at any time measured.`;
+    return `In ${name}, no other method beats the ${methodTitle(runs[0].method)} at any time measured. `;
   }
   if (runs.length <= MOST_RUNS_TOLD) {
     const parts = runs.map((run, index) =>
       `the ${methodTitle(run.method)} ${index + 1 < runs.length ? `up to ${time(secondsOf(run.until))}` : `from ${time(secondsOf(run.from))} on`}`);
-    return `In ${name}, the least error in a given time is that of ${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}.`;
+    return `In ${name}, the least error in a given time is that of ${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}. `;
   }
   const counts = data.methods.map(method => [front.filter(point => point.method === method.key).length, method.title]);
   const shares = counts.filter(([count]) => count > 0).sort((a, b) => b[0] - a[0]).map(([count, title]) => `${count} of the ${title}`);
   return `In ${name}, the methods take turns: of ${front.length} settings on the Pareto front, `
-    + `${shares.slice(0, -1).join(", ")} and ${shares.at(-1)}.`;
+    + `${shares.slice(0, -1).join(", ")} and ${shares.at(-1)}. `;
 }
 
 function bestSentence(front) {
   const best = front.at(-1);
-  return ` The least error measured is ${decimal(errorOf(best))}, in ${time(secondsOf(best))}.`
+  return `The least error measured is ${decimal(errorOf(best))}, in ${time(secondsOf(best))}.`
     + (belowFloor(best) ? ` It is below the noise of the reference (${decimal(floorOf(state.metric))}).` : "");
 }
 
@@ -234,7 +243,7 @@ const within = limit => frontPoints().filter(point => secondsOf(point) <= limit)
 const below = limit => frontPoints().find(point => errorOf(point) <= limit);
 
 // A question with a choice of round limits, and the point of the front that answers it.
-function answerCard({ before, after, limits, chosen, write, find, result, unit }) {
+function answerCard({ before, limits, chosen, write, find, result, unit }) {
   const choice = el("select", { "aria-label": `${before} (limit)` },
     limits.map(limit => el("option", { value: limit, selected: limit === chosen }, write(limit))));
   const answer = el("div", { "aria-live": "polite" });
@@ -242,17 +251,17 @@ function answerCard({ before, after, limits, chosen, write, find, result, unit }
     const point = find(Number(choice.value));
     answer.replaceChildren(
       el("p", { class: "value" }, result(point), " ", el("small", {}, unit(point))),
-      el("p", {}, marker(point.method), " ", pointLink(point)));
+      markedLink(point));
   };
   choice.addEventListener("change", show);
   show();
-  return el("div", { class: "answer" }, el("p", {}, before, " ", choice, after), answer);
+  return el("div", { class: "answer" }, el("p", {}, before, " ", choice), answer);
 }
 
 function timeCard(front) {
   const limits = roundSteps(secondsOf(front[0]), secondsOf(front.at(-1)));
   return answerCard({
-    before: "Least error within", after: "", limits, chosen: limits.includes(1) ? 1 : limits[limits.length >> 1],
+    before: "Least error within", limits, chosen: limits.includes(1) ? 1 : limits[limits.length >> 1],
     write: time, find: within,
     result: point => decimal(errorOf(point)), unit: point => `${distanceName(state.metric)} in ${time(secondsOf(point))}`,
   });
@@ -263,7 +272,7 @@ function errorCard(front) {
   if (errors.length === 0) return null;
   const limits = roundSteps(Math.min(...errors), Math.max(...errors));
   return answerCard({
-    before: `Fastest with ${distanceName(state.metric)} up to`, after: "", limits, chosen: limits[(limits.length - 1) >> 1],
+    before: `Fastest with ${distanceName(state.metric)} up to`, limits, chosen: limits[(limits.length - 1) >> 1],
     write: decimal, find: below,
     result: point => time(secondsOf(point)), unit: point => `with ${decimal(errorOf(point))}`,
   });
@@ -317,10 +326,18 @@ const ZERO_BAND = 34;
 const FLOOR_REACH = 30; // A floor further below the points than this would flatten them: it is told in words.
 let plot = null;
 
+// The widest label of the error axis, by its letters: superscripts are narrow, so this is rather too much.
+function labelRoom(scale, box) {
+  const labels = errorTicks(scale, box).filter(tick => tick.label).map(tick => decimal(tick.at).length);
+  return 20 + 7 * Math.max(3, ...labels);
+}
+
+const errorTicks = (scale, box) => logTicks(scale, 22, box.bottom - box.top);
+
 function plotLayout(points) {
   const width = Math.max(300, $("plot").clientWidth || 960);
-  const height = clamp(width * 0.55, 320, 540);
-  const box = { left: width < 500 ? 48 : 58, right: width - 14, top: 30, bottom: height - 44 };
+  const height = clamp(width * 0.55, 360, 540);
+  const box = { right: width - 14, top: 30, bottom: height - 44 };
   const positive = points.map(errorOf).filter(error => error > 0);
   const zeros = positive.length < points.length;
   const least = Math.min(...positive);
@@ -328,9 +345,10 @@ function plotLayout(points) {
   const floorShown = floor > 0 && (positive.length === 0 || floor * FLOOR_REACH > least);
   const errors = [...positive, ...(floorShown ? [floor] : [])];
   const times = points.flatMap(point => [point.seconds.least, secondsOf(point), point.seconds.most]).filter(seconds => seconds > 0);
-  const x = logScale(Math.min(...times), Math.max(...times), box.left, box.right);
   const [low, high] = errors.length === 0 ? [0.1, 1] : [Math.min(...errors), Math.max(...errors)];
   const y = logScale(low, high, box.bottom - (zeros ? ZERO_BAND : 0), box.top);
+  box.left = labelRoom(y, box);
+  const x = logScale(Math.min(...times), Math.max(...times), box.left, box.right);
   return { width, height, box, x, y, zeros, floor: floorShown ? floor : null };
 }
 
@@ -350,7 +368,7 @@ function drawGrid() {
     // A label at the very edge would be cut off.
     if (tick.label && at < box.right - 12) text(time(tick.at), { x: at, y: box.bottom + 18, "text-anchor": "middle" });
   }
-  for (const tick of logTicks(y, 22, box.bottom - box.top)) {
+  for (const tick of errorTicks(y, box)) {
     const at = y(tick.at);
     line(tick, { x1: box.left, x2: box.right, y1: at, y2: at });
     if (tick.label) text(decimal(tick.at), { x: box.left - 7, y: at + 4, "text-anchor": "end" });
@@ -372,8 +390,13 @@ function drawFloor() {
   return [
     svg("rect", { class: "floor-area", x: box.left, y: at, width: box.right - box.left, height: Math.max(0, box.bottom - at) }),
     svg("line", { class: "floor", x1: box.left, x2: box.right, y1: at, y2: at }),
-    svg("text", { class: "halo", x: box.left + 8, y: at - 6 }, `noise of the reference, ${decimal(plot.floor)}`),
   ];
+}
+
+function drawFloorLabel() {
+  if (plot.floor === null) return [];
+  const at = { x: plot.box.left + 8, y: plot.y(plot.floor) - 6 };
+  return [svg("text", { class: "halo", ...at }, `noise of the reference, ${decimal(plot.floor)}`)];
 }
 
 // The least error there is at each time: it holds until the next point of the front lowers it.
@@ -431,7 +454,7 @@ function drawPlot() {
     viewBox: `0 0 ${plot.width} ${plot.height}`, role: "group",
     "aria-label": `${distanceName(state.metric)} against time for ${plural(points.length, "setting")}, both logarithmic. `
       + "Arrow keys go from point to point, Enter selects. The table of all settings has the same values.",
-  }, drawGrid(), drawFloor(), drawFronts(points), nodes);
+  }, drawGrid(), drawFloor(), drawFronts(points), drawFloorLabel(), nodes);
   drawing.addEventListener("pointermove", hoverNearest);
   drawing.addEventListener("pointerleave", () => markNear(null));
   drawing.addEventListener("click", event => { const point = nearest(event); if (point) select(point); });
@@ -459,11 +482,17 @@ function drawPlotNotes() {
   $("plot-notes").replaceChildren(...lines);
 }
 
+// A point of no method, on the line of the front or off it.
+function legendPoint(front) {
+  const line = front ? [svg("path", { class: "front overall", d: "M-14 0H14" })] : [];
+  return svg("svg", { class: "marker wide", viewBox: "-14 -7 28 14", style: "--method: var(--muted)", "aria-hidden": "true" },
+    line, svg("path", { class: front ? "mark filled" : "mark", d: SHAPES[0](5) }));
+}
+
 function drawLegend() {
   const used = data.methods.filter(method => data.points.some(point => point.method === method.key));
   const methods = used.map(method => el("li", {}, marker(method.key), method.title));
-  const extra = used.length === 0 ? [] : [el("li", { class: "quiet" }, marker(used[0].key), "on the Pareto front"),
-    el("li", { class: "quiet" }, marker(used[0].key, false), "not on it")];
+  const extra = used.length === 0 ? [] : [el("li", {}, legendPoint(true), "on the Pareto front"), el("li", {}, legendPoint(false), "not on it")];
   $("legend").replaceChildren(...methods, ...extra);
 }
 
@@ -544,10 +573,10 @@ function hideTooltip() {
 function showPointTooltip(point) {
   const content = [
     el("div", {}, marker(point.method), " ", el("strong", {}, methodTitle(point.method))),
-    el("div", {}, el("code", {}, writeSettings(point.settings))),
-    list([["time", spread(point.seconds)], ["memory", memory(point.bytes)], ...errorFacts(point)]),
+    el("div", {}, settingsCode(point.settings)),
+    list(pointFactList(point)),
     belowFloor(point) ? el("div", {}, FLOOR_WORDS) : null,
-    el("div", { class: "command" }, point.command),
+    commandText(point.command),
   ];
   showTooltip(content.filter(part => part !== null), plot.nodes.get(point).querySelector(".ring").getBoundingClientRect());
 }
@@ -645,15 +674,13 @@ function copyRow(command) {
       copy.textContent = "Selected";
     }
   });
-  const text = el("span", { class: "command" }, command);
+  const text = commandText(command);
   return el("div", { class: "copy-row" }, text, copy);
 }
 
 function pointFacts(point) {
   return el("div", {},
-    list(point.settings.map(([flag, setting]) => [el("code", {}, flag), setting])),
-    list([["time", spread(point.seconds)], ["memory", memory(point.bytes)]]),
-    list(errorFacts(point)),
+    list([...point.settings.map(([flag, setting]) => [el("code", {}, flag), setting]), ...pointFactList(point)]),
     belowFloor(point) ? el("p", { class: "note" }, FLOOR_WORDS) : null);
 }
 
@@ -664,7 +691,7 @@ function drawDetail() {
   const pictures = point.image === null ? [noPicture(point)] : [wipeFigure(point), differenceFigure(point)];
   $("detail").replaceChildren(
     el("p", { class: "chosen" }, marker(point.method, onFront(point)), " ", el("strong", {}, methodTitle(point.method)), " ",
-      el("code", {}, tellingSettings(point))),
+      settingsCode(tellingSettings(point))),
     el("div", { class: "detail-grid" }, pictures, pointFacts(point)),
     copyRow(point.command));
   markEnlarged();
@@ -672,7 +699,7 @@ function drawDetail() {
 
 // -------------------------------------------------------------------------------------------------------------- steps
 
-const STEP_COLOURS = 9;
+const STEP_COLOURS = 12;
 const HOST = "host";
 
 // Every step's share of its render, summed over all renders: the largest get colours of their own, on every bar the same.
@@ -699,8 +726,8 @@ function stepParts(point) {
 
 function stepPart(part) {
   const words = `${part.words}, ${decimal(100 * part.share)} %`;
-  const node = el("span", { class: `part${part.host ? " host" : ""}${part.share < 0.03 ? " thin" : ""}`,
-    style: `flex: ${part.share} 1 0;${part.host ? "" : stepColour(part.name)}` }, part.share < 0.1 ? "" : part.name);
+  const node = el("span", { class: part.host ? "part host" : "part", style: `flex: ${part.share} 1 0;${part.host ? "" : stepColour(part.name)}` },
+    el("span", {}, part.name));
   node.addEventListener("pointerenter", () => showTooltip([el("strong", {}, part.name), el("div", {}, words)], node.getBoundingClientRect()));
   node.addEventListener("pointerleave", hideTooltip);
   return node;
@@ -710,7 +737,7 @@ function stepRow(point, first) {
   const parts = stepParts(point);
   const words = parts.map(part => `${part.name} ${part.words}`).join(", ");
   return el("div", { class: first ? "bar-row first" : "bar-row" },
-    el("span", {}, marker(point.method, onFront(point)), " ", first ? el("strong", {}, pointLink(point)) : pointLink(point)),
+    markedLink(point),
     el("span", { class: "stack", role: "img", "aria-label": words }, parts.map(stepPart)),
     el("span", { class: "total" }, time(secondsOf(point))));
 }
@@ -726,6 +753,13 @@ function drawSteps() {
   const rows = [...(state.point ? [state.point] : []), ...frontPoints().filter(point => point !== state.point)];
   $("steps-section").hidden = rows.length === 0;
   $("steps").replaceChildren(...rows.map(point => stepRow(point, point === state.point)), stepLegend(rows));
+  hideCutLabels();
+}
+
+function hideCutLabels() {
+  for (const label of document.querySelectorAll(".part > span")) {
+    label.style.visibility = label.offsetWidth > label.parentNode.clientWidth ? "hidden" : "";
+  }
 }
 
 // ------------------------------------------------------------------------------------------------------------- tables
@@ -748,7 +782,7 @@ function splitRow(split) {
     el("span", { class: "bias", style: `flex: ${share}` }), el("span", { class: "noise", style: `flex: ${1 - share}` }));
   const metric = data.metrics.find(candidate => candidate.key === split.metric);
   return el("tr", {},
-    el("td", {}, marker(split.method), " ", point ? pointLink(point) : methodTitle(split.method)),
+    el("td", {}, point ? markedLink(point) : [marker(split.method), " ", methodTitle(split.method)]),
     el("td", {}, metric?.name ?? split.metric),
     ...[split.total, split.bias, split.noise].map(part => el("td", { class: "number" }, decimal(part))),
     el("td", {}, bar), el("td", {}, splitWords(share), " ", el("small", {}, `(${split.how})`)));
@@ -796,7 +830,7 @@ function drawKnobs() {
 // ---------------------------------------------------------------------------------------------------------- all points
 
 const columns = [
-  { label: "method", key: point => methodTitle(point.method), cell: point => [marker(point.method), " ", pointLink(point)] },
+  { label: "method", key: point => methodTitle(point.method), cell: markedLink },
   { label: "time", key: secondsOf, cell: point => time(secondsOf(point)), number: true },
   { label: "spread", key: point => point.seconds.most / point.seconds.least, number: true,
     cell: point => `${time(point.seconds.least)} to ${time(point.seconds.most)}` },
@@ -851,7 +885,7 @@ function drawFooter() {
     ["errors", "Against the reference, in radiance x with the reference's r unless the formula says otherwise."],
     ...metrics,
     ["display", `${data.display}: how radiance became the pictures of this page.`],
-    ["command", el("code", {}, data.command)],
+    ["command", commandText(data.command)],
     ["version", `twinlight ${data.twinlight}`],
   ]).childNodes);
 }
@@ -904,14 +938,11 @@ function followAddress() {
   drawAll();
 }
 
-function watchWidth() {
-  let width = $("plot").clientWidth;
-  new ResizeObserver(() => {
-    if ($("plot").clientWidth === width) return;
-    width = $("plot").clientWidth;
-    drawPlot();
-    markEnlarged();
-  }).observe($("plot"));
+// Between these the drawing scales with its frame; drawn anew, its letters keep their size.
+function followWidth() {
+  drawPlot();
+  hideCutLabels();
+  markEnlarged();
 }
 
 readAddress();
@@ -924,7 +955,7 @@ drawKernels();
 drawKnobs();
 drawAll();
 drawFooter();
-watchWidth();
+window.addEventListener("resize", followWidth);
 window.addEventListener("hashchange", followAddress);
 window.addEventListener("scroll", hideTooltip, { passive: true });
 window.addEventListener("keydown", event => { if (event.key === "Escape") hideTooltip(); });
