@@ -8,7 +8,7 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   twinlight cost builtin:cornell
-      two minutes; writes cornell-cost/cost.html, cost.json and cost.csv
+      in less than three minutes; writes cornell-cost/cost.html, cost.json and cost.csv
   twinlight cost room.toml --methods slhb,voxel --bounces 8 --time-limit 3600 --out room
       an hour for two methods; the same command again with more time goes on where this ended
   twinlight cost builtin:cornell --backend gpu --reference converged.exr
@@ -38,10 +38,10 @@ pub struct CostArgs {
     #[arg(long, value_name = "DIR", env = "TWINLIGHT_OUT")]
     pub out: Option<PathBuf>,
     /// Begin no new setting after this many seconds, the reference and earlier runs into the same folder included
-    #[arg(long, value_name = "SECONDS", env = "TWINLIGHT_TIME_LIMIT", default_value = "120", value_parser = seconds,
+    #[arg(long, value_name = "SECONDS", env = "TWINLIGHT_TIME_LIMIT", default_value = "150", value_parser = seconds,
           allow_negative_numbers = true)]
     pub time_limit: f64,
-    /// Measure three settings of each method alone, for a first look
+    /// Measure two settings of each method alone, for a first look
     #[arg(long)]
     pub quick: bool,
 
@@ -54,7 +54,7 @@ pub struct CostArgs {
         help_heading = "Reference"
     )]
     pub reference: Option<PathBuf>,
-    /// Samples per pixel of the reference, in two halves by which its own noise is measured [default: what fits into a third of --time-limit, up to 8192]
+    /// Samples per pixel of the reference, in two halves by which its own noise is measured [default: what fits into a quarter of --time-limit, up to 8192]
     #[arg(long, value_name = "N", env = "TWINLIGHT_REFERENCE_SPP", help_heading = "Reference", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u32).range(2..=16_777_216))]
     pub reference_spp: Option<u32>,

@@ -1,6 +1,8 @@
 //! The render that a setting stands for, as a command: what is measured is what that command does.
 
-use crate::args::{BackendChoice, Cli, Command, CostArgs, DeviceArgs, LoadArgs, ModeName, PictureArgs};
+use crate::args::{
+    BackendChoice, Cli, Command, CostArgs, DeviceArgs, LoadArgs, MAX_MEMORY, ModeName, PictureArgs,
+};
 use crate::exit::Failure;
 use clap::Parser;
 use std::fmt::Display;
@@ -97,7 +99,9 @@ impl Words {
 
     fn load(&mut self, load: &LoadArgs) {
         load.allow_path.iter().for_each(|path| self.flag("--allow-path", path.display()));
-        self.flag("--max-memory", load.max_memory.0);
+        if MAX_MEMORY.parse() != Ok(load.max_memory) {
+            self.flag("--max-memory", load.max_memory.0);
+        }
         self.0.extend(load.lenient.then(|| "--lenient".into()));
         self.0.extend(load.strict.then(|| "--strict".into()));
         load.animation.iter().for_each(|animation| self.flag("--animation", animation));

@@ -1,35 +1,34 @@
 //! What measurements depend on beside the setting.
 
-use crate::args::{CostArgs, PictureArgs};
-use crate::source::Prepared;
+use super::setup::Setup;
+use crate::args::PictureArgs;
 use serde_json::{Value, json};
 use twinlight::BackendInfo;
+use twinlight::methods::post::image::Image;
 use twinlight::scene::{Camera, CompiledScene};
 
 /// What identifies the conditions: measurements under others can't be compared. Not the time limit, so that more time goes on with what is there.
-pub fn key(
-    args: &CostArgs,
-    prepared: &Prepared,
-    bounces: Option<u32>,
-    camera: &Camera,
-    usual: &PictureArgs,
-    info: &BackendInfo,
-) -> String {
+pub fn key(setup: &Setup, camera: &Camera, usual: &PictureArgs, info: &BackendInfo) -> String {
+    let (args, prepared) = (setup.args, setup.prepared);
     let conditions: Value = json!({
         "twinlight": env!("CARGO_PKG_VERSION"),
         "scene": args.scene,
         "content": format!("{:016x}", scene_digest(&prepared.compiled)),
         "size": [args.size.0, args.size.1],
-        "bounces": bounces,
+        "bounces": setup.bounces,
         "seed": args.seed,
         "camera": format!("{camera:?}"),
         "tone": format!("{:?}", args.tone),
         "usual": format!("{:?} {:?} {:?}", usual.effects, usual.tolerance, usual.sampler),
-        "reference": args.reference,
         "reference_spp": args.reference_spp,
         "backend": [info.kind, &info.device, &info.driver, if info.strict { "strict" } else { "portable" }],
     });
     format!("{:016x}", digest([conditions.to_string().as_bytes()]))
+}
+
+/// The same, and the picture that errors are measured against.
+pub fn key_with(key: &str, reference: &Image) -> String {
+    format!("{:016x}", digest([key.as_bytes(), bytemuck::cast_slice(reference.pixels())]))
 }
 
 fn scene_digest(scene: &CompiledScene) -> u64 {

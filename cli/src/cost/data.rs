@@ -1,81 +1,68 @@
 //! What a study found, as JSON: what the page shows and what `cost.json` holds.
 
 use super::base64;
-use super::command::Render;
 use super::kernels;
-use super::pictures::Pictures;
-use super::records::{Parts, Point, Records, What};
-use crate::args::CostArgs;
+use super::records::{Parts, Point};
+use super::study::Study;
 use crate::exit::Failure;
-use crate::source::Prepared;
 use serde_json::{Map, Value, json};
 use twinlight::BackendInfo;
-use twinlight::methods::cost::{Errors, KNOBS, METHODS, METRICS, Reference, Setting, front};
+use twinlight::methods::cost::{Errors, KNOBS, METHODS, METRICS, front};
 use twinlight::methods::post::metrics::Metric;
-use twinlight::methods::post::tonemap::Display;
 
-/// Everything that is told.
-pub struct Study<'a> {
-    pub args: &'a CostArgs,
-    pub prepared: &'a Prepared<'a>,
-    pub bounces: Option<u32>,
+/// A study, and how it is told.
+pub struct Told<'a> {
+    pub study: &'a Study<'a>,
     pub info: BackendInfo,
-    pub tone: Display,
-    pub methods: &'a [&'static str],
-    pub records: &'a Records,
-    pub pictures: &'a Pictures,
-    pub reference: &'a Reference,
     pub is_complete: bool,
 }
 
-impl Study<'_> {
+impl Told<'_> {
     /// The whole, with pictures.
     ///
     /// # Errors
     /// Those of the reference's noise and of the PNG encoder.
     pub fn json(&self) -> Result<Value, Failure> {
-        let points: Vec<&Point> = self.records.points().collect();
+        let (study, setup) = (self.study, self.study.setup);
+        let args = setup.args;
+        let points: Vec<&Point> = study.records.points().collect();
         let fronts = Fronts::of(&points);
         let of_point = |(id, point): (usize, &&Point)| self.point(id, point, &fronts);
         let mode = if self.info.strict { "strict" } else { "portable" };
         Ok(json!({
             "twinlight": env!("CARGO_PKG_VERSION"),
-            "command": format!("twinlight cost {}", self.args.scene),
+            "command": format!("twinlight cost {}", args.scene),
             "finished": self.is_complete,
-            "scene": { "source": self.args.scene, "triangles": self.prepared.scene.triangle_count() },
-            "size": [self.args.size.0, self.args.size.1],
-            "bounces": self.bounces,
-            "seed": self.args.seed,
+            "scene": { "source": args.scene, "triangles": setup.prepared.scene.triangle_count() },
+            "size": [args.size.0, args.size.1],
+            "bounces": setup.bounces,
+            "seed": args.seed,
             "backend": { "kind": self.info.kind, "device": self.info.device, "driver": self.info.driver, "mode": mode },
-            "display": format!("exposure {} stops, curve {}", self.args.tone.exposure, self.args.tone.tonemap.key()),
+            "display": format!("exposure {} stops, curve {}", args.tone.exposure, args.tone.tonemap.key()),
             "reference": self.reference()?,
             "metrics": METRICS.map(metric),
-            "methods": METHODS.iter().filter(|(key, _)| self.methods.contains(key))
+            "methods": METHODS.iter().filter(|(key, _)| study.methods.contains(key))
                 .map(|(key, title)| json!({ "key": key, "title": title })).collect::<Vec<_>>(),
             "knobs": self.knobs(),
             "points": points.iter().enumerate().map(of_point).collect::<Vec<_>>(),
-            "split": self.records.parts().flat_map(|parts| self.split(parts, &points)).collect::<Vec<_>>(),
+            "split": study.records.parts().flat_map(|parts| self.split(parts, &points)).collect::<Vec<_>>(),
             "kernels": kernels::json(&points),
         }))
     }
 
     fn reference(&self) -> Result<Value, Failure> {
-        let rendered = self.records.all().iter().find_map(|record| match record.what {
-            What::Reference { samples } if self.args.reference.is_none() => Some((samples, record.spent)),
-            _ => None,
-        });
-        let noise = self.reference.noise(&self.tone).map_err(Failure::Pictures)?;
-        let noise = noise.unwrap_or([f64::NAN; METRICS.len()]);
+        let (judge, setup) = (self.study.judge, self.study.setup);
+        let noise = judge.reference.noise(&setup.tone).map_err(Failure::Pictures)?;
         Ok(json!({
-            "spp": rendered.map(|(samples, _)| samples),
-            "seconds": rendered.map(|(_, seconds)| seconds),
-            "image": inlined(&self.pictures.png(self.reference.image())?),
-            "noise": by_metric(noise.map(Some)),
+            "spp": judge.taken.map(|taken| taken.samples),
+            "seconds": judge.taken.map(|taken| taken.seconds),
+            "image": inlined(&self.study.pictures.png(judge.reference.image())?),
+            "noise": by_metric(noise.map_or([None; METRICS.len()], |noise| noise.map(Some))),
         }))
     }
 
     fn knobs(&self) -> Vec<Value> {
-        let is_told = |method: &str| method == "all" || self.methods.contains(&method);
+        let is_told = |method: &str| method == "all" || self.study.methods.contains(&method);
         let knobs = KNOBS.iter().filter(|knob| is_told(knob.method));
         knobs
             .map(|knob| {
@@ -90,7 +77,7 @@ impl Study<'_> {
     fn point(&self, id: usize, point: &Point, fronts: &Fronts) -> Value {
         let (all, own) = (fronts.all(id), fronts.own(id));
         let is_shown = !all.is_empty() || !own.is_empty();
-        let image = is_shown.then(|| self.pictures.kept(&point.setting)).flatten();
+        let image = is_shown.then(|| self.study.pictures.kept(&point.setting)).flatten();
         json!({
             "id": id,
             "method": point.setting.method,
@@ -112,17 +99,20 @@ impl Study<'_> {
     fn command(&self, id: usize, point: &Point) -> Option<String> {
         let setting = point.setting.setting()?;
         let (method, flags) = (setting.method(), setting.flags());
-        let render = Render { args: self.args, bounces: self.bounces, seed: self.args.seed, method, flags };
-        Some(render.line(&format!("{method}-{id}.exr")))
+        let setup = self.study.setup;
+        Some(setup.render(method, flags, setup.args.seed).line(&format!("{method}-{id}.exr")))
     }
 
     fn split(&self, parts: &Parts, points: &[&Point]) -> Vec<Value> {
         let point = points.iter().position(|point| point.setting == parts.setting);
-        let is_finest = parts.setting.setting().is_some_and(|s| s == Setting::finest(s.method()));
-        let which = if is_finest { "finest setting" } else { "most accurate setting that was measured" };
+        let which = if parts.setting.is_finest() {
+            "finest setting"
+        } else {
+            "most accurate setting that was measured"
+        };
         let of_metric = |(metric, [bias, error, noise]): &(String, [f64; 3])| {
-            let floor =
-                if self.args.reference.is_some() { "; noise of the reference counts as bias" } else { "" };
+            let is_known = self.study.judge.taken.is_some();
+            let floor = if is_known { "" } else { "; noise of the reference counts as bias" };
             json!({
                 "method": parts.setting.method, "point": point, "metric": metric,
                 "total": bias + noise, "bias": bias, "noise": noise,

@@ -4,33 +4,35 @@ mod base64;
 mod command;
 mod conditions;
 mod data;
+mod judge;
 mod kernels;
 mod page;
 mod pictures;
 mod progress;
 mod records;
+mod setup;
+mod split;
 mod study;
 mod table;
 
-use crate::args::{Bounces, CostArgs, MethodName};
+use crate::args::{CostArgs, MethodName};
 use crate::device::{self, Device};
 use crate::exit::{Failure, Stage};
 use crate::interrupt::Interrupt;
 use crate::render::Job;
 use crate::report;
-use crate::source::{self, Prepared};
-use command::Render;
+use crate::source;
+use data::Told;
+use judge::Judge;
 use pictures::Pictures;
 use records::Records;
-use std::path::PathBuf;
+use setup::Setup;
+use std::path::{Path, PathBuf};
 use study::{End, Study};
 use twinlight::io::write_file;
-use twinlight::methods::cost::{METHODS, Reference, Sweep};
+use twinlight::methods::cost::{METHODS, Sweep};
 use twinlight::methods::post::tonemap;
 use twinlight::{Backend, BackendInfo, Error};
-
-/// As often light scatters at most, unless the scene or a flag says otherwise: all methods must simulate the same light to be compared.
-const BOUNCES: u32 = 4;
 
 /// Runs the command.
 ///
@@ -41,130 +43,78 @@ pub fn run(args: &CostArgs) -> Result<(), Failure> {
     let loaded = source::load(&args.scene, &args.load, args.camera.map(|camera| camera.0))?;
     let prepared = loaded.at(0.0)?;
     prepared.notices.iter().for_each(|text| report::notice(text));
-    let folder = args.out.clone().unwrap_or_else(|| format!("{}-cost", source::stem(&args.scene)).into());
-    let interrupt = Interrupt::watch()
-        .map_err(|e| Failure::Library(Stage::Device, Error::Internal(format!("signal handlers: {e}"))))?;
     let (device, unavailable) = device::open(&args.device)?;
     unavailable.iter().for_each(|text| report::notice(text));
-    let session = Session { args, prepared: &prepared, tone, folder, interrupt };
+    let interrupt = Interrupt::watch()
+        .map_err(|e| Failure::Library(Stage::Device, Error::Internal(format!("signal handlers: {e}"))))?;
+    let setup = Setup::new(args, &prepared, tone, interrupt);
     match &device {
-        Device::Cpu(backend) => session.run(backend),
+        Device::Cpu(backend) => on_backend(&setup, backend),
         #[cfg(feature = "gpu")]
-        Device::Gpu(backend) => session.run(&**backend),
+        Device::Gpu(backend) => on_backend(&setup, &**backend),
     }
 }
 
-struct Session<'a> {
-    args: &'a CostArgs,
-    prepared: &'a Prepared<'a>,
-    tone: tonemap::Display,
-    folder: PathBuf,
-    interrupt: Interrupt,
+fn on_backend<B: Backend>(setup: &Setup, backend: &B) -> Result<(), Failure> {
+    let (args, info) = (setup.args, backend.info());
+    let key = key(setup, &info)?;
+    let folder = folder(args)?;
+    let pictures = Pictures::new(&folder, &key, setup.tone);
+    let judge = Judge::find(setup, &pictures, backend);
+    setup.progress.clear();
+    // Without a reference, nothing can be judged and nothing is worth writing.
+    let Some(judge) = judge? else {
+        return Err(Failure::Signal(setup.interrupt.caught().unwrap_or_default()));
+    };
+    let key = conditions::key_with(&key, judge.reference.image());
+    let records = Records::open(folder.join("points.jsonl"), &key)?;
+    let methods = methods(&args.methods);
+    let sweep = if args.quick { Sweep::quick(&methods) } else { Sweep::new(&methods) };
+    let before = records.points().count();
+    let mut study = Study { setup, judge: &judge, methods: &methods, sweep, records, pictures: &pictures };
+    let end = study.run(backend);
+    setup.progress.clear();
+    let end = end?;
+    write(&Told { study: &study, info, is_complete: end == End::Complete }, &folder)?;
+    let count = study.records.points().count();
+    report::status(&format!("{count} settings, {} of them new, in {:.0} s", count - before, study.spent()));
+    match end {
+        End::Signal(signal) => Err(Failure::Signal(signal)),
+        End::Complete | End::Time => Ok(()),
+    }
 }
 
-impl Session<'_> {
-    fn run<B: Backend>(&self, backend: &B) -> Result<(), Failure> {
-        let args = self.args;
-        let methods = methods(&args.methods);
-        let bounces = bounces(args, self.prepared);
-        let key = self.key(bounces, &backend.info())?;
-        std::fs::create_dir_all(&self.folder).map_err(|source| {
-            Failure::Library(Stage::Output, Error::Io { path: self.folder.clone(), source })
-        })?;
-        let mut records = Records::open(self.folder.join("points.jsonl"), &key)?;
-        let pictures = Pictures::new(&self.folder, &key, self.tone);
-        let progress = progress::Display::new(args.progress);
-        let sweep = if args.quick { Sweep::quick(&methods) } else { Sweep::new(&methods) };
-        let before = records.points().count();
-        let (records_now, pictures_now) = (&mut records, &pictures);
-        let ended = Study {
-            args,
-            prepared: self.prepared,
-            bounces,
-            tone: self.tone,
-            sweep,
-            methods: &methods,
-            records: records_now,
-            pictures: pictures_now,
-            progress: &progress,
-            interrupt: &self.interrupt,
-        }
-        .run(backend);
-        progress.clear();
-        let (end, reference) = ended?;
-        if let Some(reference) = &reference {
-            let info = backend.info();
-            let is_complete = end == End::Complete;
-            self.write(&methods, bounces, info, &records, &pictures, reference, is_complete)?;
-            let count = records.points().count();
-            report::status(&format!(
-                "{count} settings, {} of them new, in {:.0} s",
-                count - before,
-                records.spent()
-            ));
-        }
-        match end {
-            End::Signal(signal) => Err(Failure::Signal(signal)),
-            End::Complete | End::Time => Ok(()),
-        }
-    }
+/// Of the conditions. What a render takes from the environment is read as a render reads it.
+fn key(setup: &Setup, info: &BackendInfo) -> Result<String, Failure> {
+    let usual = setup.render("reference", vec![("--spp", "1".into())], setup.args.seed).picture()?;
+    let job = Job::new(&usual, None, setup.prepared)?;
+    Ok(conditions::key(setup, &job.camera, &usual, info))
+}
 
-    /// Of the conditions. What a render takes from the environment is read as a render reads it.
-    fn key(&self, bounces: Option<u32>, info: &BackendInfo) -> Result<String, Failure> {
-        let flags = vec![("--spp", "1".into())];
-        let render = Render { args: self.args, bounces, seed: self.args.seed, method: "reference", flags };
-        let usual = render.picture()?;
-        let job = Job::new(&usual, None, self.prepared)?;
-        Ok(conditions::key(self.args, self.prepared, bounces, &job.camera, &usual, info))
-    }
+/// Of the study, which is there afterwards.
+fn folder(args: &CostArgs) -> Result<PathBuf, Failure> {
+    let usual = || format!("{}-cost", source::stem(&args.scene)).into();
+    let folder = args.out.clone().unwrap_or_else(usual);
+    let made = std::fs::create_dir_all(&folder);
+    made.map_err(|source| Failure::Library(Stage::Output, Error::Io { path: folder.clone(), source }))?;
+    Ok(folder)
+}
 
-    fn write(
-        &self,
-        methods: &[&'static str],
-        bounces: Option<u32>,
-        info: BackendInfo,
-        records: &Records,
-        pictures: &Pictures,
-        reference: &Reference,
-        is_complete: bool,
-    ) -> Result<(), Failure> {
-        let (args, prepared, tone) = (self.args, self.prepared, self.tone);
-        let study = data::Study {
-            args,
-            prepared,
-            bounces,
-            info,
-            tone,
-            methods,
-            records,
-            pictures,
-            reference,
-            is_complete,
-        }
-        .json()?;
-        let page = page::html(&args.scene, &study);
-        let numbers = format!("{:#}\n", data::without_pictures(study));
-        let table = table::csv(&records.points().collect::<Vec<_>>());
-        let files = [("cost.html", page), ("cost.json", numbers), ("cost.csv", table)];
-        for (name, text) in files {
-            let path = self.folder.join(name);
-            write_file(&path, text.as_bytes()).map_err(Failure::at(Stage::Output))?;
-            report::print(&format!("{}\n", path.display()))?;
-        }
-        Ok(())
+fn write(told: &Told, folder: &Path) -> Result<(), Failure> {
+    let study = told.json()?;
+    let page = page::html(&told.study.setup.args.scene, &study);
+    let numbers = format!("{:#}\n", data::without_pictures(study));
+    let table = table::csv(&told.study.records.points().collect::<Vec<_>>());
+    for (name, text) in [("cost.html", page), ("cost.json", numbers), ("cost.csv", table)] {
+        let path = folder.join(name);
+        write_file(&path, text.as_bytes()).map_err(Failure::at(Stage::Output))?;
+        report::print(&format!("{}\n", path.display()))?;
     }
+    Ok(())
 }
 
 /// In the order of the table, each once.
 fn methods(wanted: &[MethodName]) -> Vec<&'static str> {
     let is_wanted = |key: &str| wanted.iter().any(|method| method.key() == key);
     METHODS.iter().map(|(key, _)| *key).filter(|key| is_wanted(key)).collect()
-}
-
-/// The flag's, else the scene's, else the usual: the same for all methods.
-fn bounces(args: &CostArgs, prepared: &Prepared) -> Option<u32> {
-    match args.bounces {
-        Some(Bounces(bounces)) => bounces,
-        None => prepared.settings.bounces.or(Some(BOUNCES)),
-    }
 }

@@ -1,6 +1,7 @@
 //! Pictures in the folder of a study.
 
 use super::conditions::digest;
+use super::judge::Taken;
 use super::records::Words;
 use crate::exit::{Failure, Stage};
 use std::path::{Path, PathBuf};
@@ -50,28 +51,37 @@ impl Pictures {
     }
 
     /// The reference of an earlier run under the same conditions; `None` if there is none that can be read.
-    pub fn kept_reference(&self) -> Option<Reference> {
+    pub fn kept_reference(&self) -> Option<(Reference, Taken)> {
         let bytes = read_limited(&self.reference_path(), MAX_FILE_BYTES).ok()?;
         let limits = Limits::default();
         let attributes = exr::read_attributes(&bytes, "reference", &limits).ok()?;
-        attributes.iter().find(|(name, value)| name == "conditions" && *value == self.key)?;
+        let attribute = |wanted| attributes.iter().find(|(name, _)| name == wanted).map(|(_, value)| value);
+        let taken = Taken {
+            samples: attribute("samples")?.parse().ok()?,
+            seconds: attribute("seconds")?.parse().ok()?,
+        };
+        if attribute("conditions") != Some(&self.key) {
+            return None;
+        }
         let layers = read_layers(&bytes, "reference", &limits).ok()?;
         let half = |name| Image::new(layers.width, layers.height, layers.rgb(name)?).ok();
-        Reference::of_halves(half(HALVES[0])?, half(HALVES[1])?).ok()
+        let reference = Reference::of_halves(half(HALVES[0])?, half(HALVES[1])?).ok()?;
+        Some((reference, taken))
     }
 
     /// Keeps the reference for later runs: its mean, as a picture, and its halves.
     ///
     /// # Errors
     /// [`Error::Io`].
-    pub fn keep_reference(&self, first: &Image, second: &Image, samples: u32) -> Result<(), Failure> {
+    pub fn keep_reference(&self, first: &Image, second: &Image, taken: Taken) -> Result<(), Failure> {
         let mean = Reference::of_halves(first.clone(), second.clone()).map_err(Failure::Pictures)?;
         let mut layers = LayeredImage::new(first.width(), first.height());
         layers.add_rgb("", mean.image().pixels());
         layers.add_rgb(HALVES[0], first.pixels());
         layers.add_rgb(HALVES[1], second.pixels());
-        let samples = samples.to_string();
-        let attributes = [("conditions", self.key.as_str()), ("samples", samples.as_str())];
+        let (samples, seconds) = (taken.samples.to_string(), taken.seconds.to_string());
+        let attributes =
+            [("conditions", self.key.as_str()), ("samples", samples.as_str()), ("seconds", seconds.as_str())];
         exr::write(&self.reference_path(), &layers, &attributes).map_err(Failure::at(Stage::Output))
     }
 

@@ -37,6 +37,8 @@ impl Display {
         let left = (limit - spent).max(0.0);
         match self {
             Self::Bar(bar) => {
+                // A bar that was taken away comes back.
+                bar.reset();
                 bar.set_position((spent / limit * STEPS as f64) as u64);
                 bar.set_message(format!("{points} settings, at most {left:.0} s left: {doing}"));
             }

@@ -25,11 +25,6 @@ pub struct Record {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum What {
-    /// The reference was rendered.
-    Reference {
-        /// With so many samples per pixel.
-        samples: u32,
-    },
     /// A setting was measured.
     Point(Point),
     /// A setting could not be rendered.
@@ -113,6 +108,11 @@ impl Words {
     pub fn setting(&self) -> Option<Setting> {
         Setting::read(&self.method, self.flags.iter().map(|(flag, value)| (flag.as_str(), value.as_str())))
     }
+
+    /// Whether it is the finest setting of its method.
+    pub fn is_finest(&self) -> bool {
+        self.setting().is_some_and(|setting| setting == Setting::finest(setting.method()))
+    }
 }
 
 impl Parts {
@@ -138,7 +138,7 @@ impl Record {
         let (setting, seconds, errors) = match &self.what {
             What::Point(point) => (&point.setting, point.seconds.median, point.distances()[..2].to_vec()),
             What::Failed { setting, .. } => (setting, f64::NAN, vec![f64::NAN; 2]),
-            What::Reference { .. } | What::Split(_) => return None,
+            What::Split(_) => return None,
         };
         Some(Tried { setting: setting.setting()?, seconds, errors, spent: self.spent })
     }

@@ -19,6 +19,7 @@ fn every_command_has_examples() {
     for command in [
         &["render"][..],
         &["compare"],
+        &["cost"],
         &["conform"],
         &["completions"],
         &["scene", "inspect"],

@@ -266,6 +266,23 @@ pub fn long_help(flag: &str) -> String {
     find(flag).map_or_else(String::new, |knob| format!("{}\n\nTrades {}.", knob.help, knob.trades))
 }
 
+/// The table as Markdown: what `KNOBS.md` holds.
+pub fn markdown() -> String {
+    let row = |knob: &Knob| {
+        let range = [knob.range, knob.unit].join(" ");
+        format!(
+            "| `{}` | {} | {} | {} | {} |\n",
+            knob.flag,
+            knob.method,
+            range.trim_end(),
+            knob.default,
+            knob.trades
+        )
+    };
+    let head = "| flag | method | range | default | trades |\n|---|---|---|---|---|\n";
+    head.to_owned() + &KNOBS.iter().map(row).collect::<String>()
+}
+
 /// The knobs that a method is swept along, with how.
 pub fn swept(method: &str) -> impl Iterator<Item = (&'static Knob, Range)> {
     let knobs = KNOBS.iter().filter(move |knob| knob.method == method || knob.method == "all");
@@ -286,7 +303,9 @@ mod tests {
             assert!(!knob.help.is_empty() && !knob.trades.is_empty() && !knob.range.is_empty());
             let Some(range) = knob.sweep else { continue };
             let place = |value| range.values.iter().position(|other| *other == value);
-            assert!(place(range.begin).is_some() && place(range.finest).is_some(), "{}", knob.flag);
+            assert!(place(range.begin).is_some(), "{}", knob.flag);
+            let last = place(range.finest).unwrap() + 1 == range.values.len();
+            assert!(last || knob.flag == "--spp", "{}: from coarse to fine", knob.flag);
             assert!(knob.method == "all" || range.begin == knob.default, "{}", knob.flag);
         }
     }
@@ -306,6 +325,12 @@ mod tests {
         assert_eq!(default("--storage"), voxels.storage.to_string());
         assert_eq!(default("--cones"), voxels.cones.to_string());
         assert_eq!(default("--light-samples"), voxels.light_samples.to_string());
+    }
+
+    #[test]
+    fn the_documentation_holds_the_table() {
+        let page = include_str!("../../../KNOBS.md");
+        assert!(page.ends_with(&markdown()), "KNOBS.md must end in\n{}", markdown());
     }
 
     #[test]

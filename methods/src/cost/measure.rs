@@ -16,7 +16,7 @@ pub struct Effort {
     pub least: usize,
     /// Timed runs at most.
     pub most: usize,
-    /// Timed runs beyond the least end when they took so long together.
+    /// Timed runs beyond the least end when they took so long together. A first run that takes longer is warm for nearly all of its time, and counts.
     pub seconds: f64,
 }
 
@@ -83,8 +83,8 @@ struct Run {
     calls: Vec<Calls>,
 }
 
-/// Renders what the plan says, once to warm up and then a few times with a watch. `scene_bytes` are those of the scene as it is resident;
-/// `go_on` is asked after every pass: `None` when it said no.
+/// Renders what the plan says, once to warm up and then a few times; all runs are timed but the first, if that is short. Every call waits
+/// for the device. `scene_bytes` are those of the scene as it is resident; `go_on` is asked after every pass: `None` when it said no.
 ///
 /// # Errors
 /// As [`Plan::run`].
@@ -97,9 +97,11 @@ pub fn measure<B: Backend>(
     effort: &Effort,
     go_on: impl Fn() -> bool,
 ) -> Result<Option<Measured>> {
-    let Some((radiance, bytes)) = warm(backend, scene, camera, plan, &go_on)? else { return Ok(None) };
-    let mut runs: Vec<Run> = Vec::new();
-    let mut spent = 0.0;
+    let Some((radiance, bytes, first)) = first(backend, scene, camera, plan, &go_on)? else {
+        return Ok(None);
+    };
+    let mut runs: Vec<Run> = Some(first).filter(|run| run.seconds > effort.seconds).into_iter().collect();
+    let mut spent: f64 = runs.iter().map(|run| run.seconds).sum();
     while runs.len() < effort.least || (runs.len() < effort.most && spent < effort.seconds) {
         let Some(run) = timed(backend, scene, camera, plan, &go_on)? else { return Ok(None) };
         spent += run.seconds;
@@ -113,14 +115,16 @@ fn control(go_on: &impl Fn() -> bool) -> impl Fn(Progress) -> Control {
     move |_| if go_on() { Control::Continue } else { Control::Stop }
 }
 
-/// [`Plan::run`] in its parts, between which the bytes of what they build are known: the picture and those.
-fn warm<B: Backend>(
+/// [`Plan::run`] in its parts, between which the bytes of what they build are known: the picture, those and the time.
+fn first<B: Backend>(
     backend: &B,
     scene: &CompiledScene,
     camera: &Camera,
     plan: &Plan,
     go_on: &impl Fn() -> bool,
-) -> Result<Option<(Vec<[f32; 3]>, u64)>> {
+) -> Result<Option<(Vec<[f32; 3]>, u64, Run)>> {
+    let (metered, start) = (Metered::waiting(backend), Instant::now());
+    let backend = &metered;
     let scene = &*plan.edits.apply(scene);
     let resident = backend.upload_scene(scene)?;
     let built = plan.build(backend, &resident, scene, None)?;
@@ -133,9 +137,12 @@ fn warm<B: Backend>(
     let buffers =
         built.buffers.as_ref().map_or(0, |buffers| buffers.bytes(backend) + buffers.read_back_bytes);
     let voxels = built.voxels.as_ref().map_or(0, |lit| lit.bytes(backend));
+    // To release what was built is part of a render too.
+    drop((built, resident));
+    let run = Run { seconds: start.elapsed().as_secs_f64(), calls: metered.calls() };
     let pixels = u64::from(settings.width) * u64::from(settings.height);
     let images = pixels * (size_of::<FilmTexel>() + size_of::<GBufferTexel>()) as u64;
-    Ok(Some((Picture { rendered, surfaces }.radiance(), buffers + voxels + images)))
+    Ok(Some((Picture { rendered, surfaces }.radiance(), buffers + voxels + images, run)))
 }
 
 fn timed<B: Backend>(
@@ -207,7 +214,7 @@ mod tests {
         };
         let (coarse, fine) = (measured(8), measured(32));
         assert!(coarse.bytes > 1000 && fine.bytes > coarse.bytes, "{} {}", coarse.bytes, fine.bytes);
-        assert_eq!(coarse.runs, 3);
+        assert_eq!((coarse.runs, fine.runs), (3, 3));
         let steps: f64 = coarse.steps.iter().map(|step| step.seconds).sum();
         assert!(steps > 0.0 && steps <= coarse.seconds.median);
         for name in ["upload_scene", "voxelize", "trace_cones", "trace_paths"] {
@@ -220,7 +227,8 @@ mod tests {
     fn more_runs_until_the_time_is_up() {
         with(8, |scene, camera, plan| {
             let runs = |effort: Effort| {
-                let measured = measure(&CpuBackend::new(), scene, camera, plan, 0, &effort, || true);
+                let counted = CpuBackend::new();
+                let measured = measure(&counted, scene, camera, plan, 0, &effort, || true);
                 measured.unwrap().unwrap().runs
             };
             assert_eq!(runs(Effort { least: 1, most: 4, seconds: 1e9 }), 4);

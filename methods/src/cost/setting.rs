@@ -136,10 +136,10 @@ impl Setting {
         all
     }
 
-    /// Those with one knob at any other value: every option of each kernel beside each other.
+    /// Those with one knob at any other value: every option of each kernel beside each other. Of samples no more than tell noise from bias.
     pub fn star(&self) -> Vec<Self> {
         let values = |(place, (_, range)): (usize, (&Knob, Range))| {
-            (0..range.values.len()).map(move |choice| self.with(place, choice))
+            (0..=index(range, range.finest)).map(move |choice| self.with(place, choice))
         };
         let mut all: Vec<Self> = swept(self.method).enumerate().flat_map(values).collect();
         all.retain(|other| other != self);
@@ -204,7 +204,11 @@ mod tests {
         assert_eq!(neighbours.len(), 8);
         assert!(neighbours.contains(&read("voxel", &[("--grid", "128")])));
         assert!(!neighbours.contains(&read("voxel", &[("--grid", "64")])));
-        assert_eq!(Setting::begin("reference").star().len(), 4);
+        let star = Setting::begin("reference").star();
+        assert_eq!(
+            star.iter().map(|setting| setting.value("--spp").unwrap()).collect::<Vec<_>>(),
+            ["1", "4", "64"]
+        );
     }
 
     /// A gather has one number of samples: settings that differ in it alone would be measured twice.
