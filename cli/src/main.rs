@@ -4,6 +4,7 @@ mod args;
 mod budget;
 mod compare;
 mod conform;
+mod cost;
 mod device;
 mod devices;
 mod exit;
@@ -44,6 +45,7 @@ fn run(command: Command) -> Result<(), Failure> {
     match command {
         Command::Render(args) => render::run(&args),
         Command::Plan(args) => plan::run(&args),
+        Command::Cost(args) => cost::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Devices { json } => devices::run(json),
         Command::Scene(command) => scene::run(&command),

@@ -1,8 +1,9 @@
 //! Light transport methods, each generic over the backend, and what happens to their images afterwards.
 //!
-//! [`post`] compares, tone-maps and colours finished images; it knows no backend.
+//! [`post`] compares, tone-maps and colours finished images; it knows no backend. [`cost`] measures what accuracy takes.
 
 pub mod budget;
+pub mod cost;
 mod gbuffer;
 mod meter;
 pub mod plan;

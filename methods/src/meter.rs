@@ -34,7 +34,8 @@ pub struct Calls {
 
 /// A backend behind which another does the work: it counts calls and takes their time. Buffers, scenes and meshes are those of the other.
 ///
-/// Backends may return before the device is done: what a call waits for is counted where it is waited for.
+/// Backends may return before the device is done: what a call waits for is counted where it is waited for, unless [`Metered::waiting`] has each call wait
+/// for itself.
 ///
 /// ```
 /// use twinlight_backend_cpu::CpuBackend;
@@ -55,13 +56,19 @@ pub struct Calls {
 #[derive(Debug)]
 pub struct Metered<'a, B> {
     inner: &'a B,
+    waits: bool,
     calls: Mutex<Vec<Calls>>,
 }
 
 impl<'a, B> Metered<'a, B> {
     /// Counts what goes to `inner` from now on.
     pub fn new(inner: &'a B) -> Self {
-        Self { inner, calls: Mutex::default() }
+        Self { inner, waits: false, calls: Mutex::default() }
+    }
+
+    /// As [`Metered::new`], and every call waits until the device is done with it: calls have the time that is their own.
+    pub fn waiting(inner: &'a B) -> Self {
+        Self { waits: true, ..Self::new(inner) }
     }
 
     /// Everything so far, in the order of first calls.
@@ -74,10 +81,7 @@ impl<'a, B> Metered<'a, B> {
         self.calls().iter().find(|calls| calls.name == name).map_or(0, |calls| calls.count)
     }
 
-    fn took<T>(&self, name: &'static str, call: impl FnOnce() -> T) -> T {
-        let start = Instant::now();
-        let result = call();
-        let time = start.elapsed();
+    fn count_call(&self, name: &'static str, time: Duration) {
         let mut calls = self.calls.lock().unwrap_or_else(PoisonError::into_inner);
         match calls.iter_mut().find(|calls| calls.name == name) {
             Some(known) => {
@@ -86,7 +90,23 @@ impl<'a, B> Metered<'a, B> {
             }
             None => calls.push(Calls { name, count: 1, time }),
         }
+    }
+}
+
+impl<B: Backend> Metered<'_, B> {
+    fn took<T>(&self, name: &'static str, call: impl FnOnce() -> Result<T>) -> Result<T> {
+        let start = Instant::now();
+        let result = call().and_then(|value| self.wait().map(|()| value));
+        self.count_call(name, start.elapsed());
         result
+    }
+
+    /// Reads something back, which comes after everything before.
+    fn wait(&self) -> Result<()> {
+        if self.waits {
+            self.inner.download(&self.inner.zeroed::<u32>(1)?)?;
+        }
+        Ok(())
     }
 }
 

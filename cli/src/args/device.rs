@@ -3,6 +3,7 @@
 use super::render::ModeName;
 use super::values::BackendChoice;
 use clap::Args;
+use twinlight::methods::cost::knobs::{help, long_help};
 
 /// Where kernels run.
 #[derive(Debug, Clone, Args)]
@@ -19,8 +20,7 @@ pub struct DeviceArgs {
         help_heading = "Device"
     )]
     pub backend: BackendChoice,
-    /// Float arithmetic of a GPU: strict gives the CPU's bits [default: strict where the adapter can]
-    #[arg(long, value_name = "MODE", env = "TWINLIGHT_MODE", help_heading = "Device")]
+    #[arg(long, help = help("--mode"), long_help = long_help("--mode"), value_name = "MODE", env = "TWINLIGHT_MODE", help_heading = "Device")]
     pub mode: Option<ModeName>,
     /// Threads of the CPU backend; the picture is the same for any number [default: one per core]
     #[arg(long, value_name = "N", env = "TWINLIGHT_THREADS", help_heading = "Device", allow_negative_numbers = true,

@@ -2,6 +2,7 @@
 
 mod compare;
 mod conform;
+mod cost;
 mod device;
 mod picture;
 mod plan;
@@ -12,12 +13,13 @@ mod voxel;
 
 pub use compare::CompareArgs;
 pub use conform::ConformArgs;
+pub use cost::CostArgs;
 pub use device::DeviceArgs;
 pub use picture::PictureArgs;
 pub use plan::PlanArgs;
 pub use render::{
-    ConeName, GatherName, LoadArgs, MethodName, MissesName, ModeName, ProgressMode, RenderArgs, Show,
-    SlhbArgs, ToneArgs,
+    ConeName, GatherName, LoadArgs, MAX_MEMORY, MethodName, MissesName, ModeName, ProgressMode, RenderArgs,
+    Show, SlhbArgs, ToneArgs,
 };
 pub use scene::{ConvertArgs, InspectArgs, SceneCommand};
 pub use values::{BackendChoice, Bounces, FrameRange, Size};
@@ -52,6 +54,8 @@ pub enum Command {
     Render(Box<RenderArgs>),
     /// Say what a render would simulate, what it would leave out, and why
     Plan(Box<PlanArgs>),
+    /// Measure what accuracy costs: which settings of which method are worth their time
+    Cost(Box<CostArgs>),
     /// Compare two pictures: error metrics with their formulas
     Compare(CompareArgs),
     /// Show what kernels can run on: the CPU and GPU adapters
@@ -73,4 +77,50 @@ pub enum Command {
         /// The shell
         shell: clap_complete::Shell,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::{Arg, CommandFactory};
+    use twinlight::methods::cost::KNOBS;
+
+    fn flags() -> Vec<Arg> {
+        let cli = Cli::command();
+        let render = cli.find_subcommand("render").unwrap();
+        render.get_arguments().cloned().collect()
+    }
+
+    /// The table of knobs says what the command line does.
+    #[test]
+    fn every_knob_is_a_flag_with_its_default() {
+        for knob in KNOBS {
+            let flags = flags();
+            let flag = flags.iter().find(|flag| flag.get_long() == knob.flag.strip_prefix("--"));
+            let flag = flag.unwrap_or_else(|| panic!("render has no {}", knob.flag));
+            let help = flag.get_help().unwrap().to_string();
+            assert_eq!(help, knob.help, "{}", knob.flag);
+            let defaults: Vec<_> =
+                flag.get_default_values().iter().map(|value| value.to_str().unwrap()).collect();
+            let said = ["default: ", "else "].map(|before| format!("{before}{}", knob.default));
+            let is_said = defaults.is_empty() && said.iter().any(|text| help.contains(text));
+            assert!(defaults == [knob.default] || is_said, "{}: {defaults:?}, {}", knob.flag, knob.default);
+        }
+    }
+
+    #[test]
+    fn every_flag_of_a_method_is_a_knob() {
+        // It draws what a method works with, and trades nothing.
+        let others = ["show"];
+        for method in ["slhb", "voxel"] {
+            let heading = format!("Method {method}");
+            let flags = flags();
+            let of_method = flags.iter().filter(|flag| flag.get_help_heading() == Some(heading.as_str()));
+            let names: Vec<&str> =
+                of_method.filter_map(Arg::get_long).filter(|name| !others.contains(name)).collect();
+            let table = KNOBS.iter().filter(|knob| knob.method == method);
+            let known: Vec<&str> = table.map(|knob| &knob.flag[2..]).collect();
+            assert_eq!(names, known);
+        }
+    }
 }

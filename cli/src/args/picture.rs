@@ -4,6 +4,7 @@ use super::VoxelArgs;
 use super::render::{LoadArgs, MethodName, SamplerName, SlhbArgs, ToneArgs};
 use super::values::{Bounces, CameraArg, Size};
 use clap::Args;
+use twinlight::methods::cost::knobs::{help, long_help};
 use twinlight::methods::plan::Effects;
 
 /// What a picture shows, and how well.
@@ -19,14 +20,13 @@ pub struct PictureArgs {
     /// Width and height, pixels [default: the scene's, else 512x512]
     #[arg(long, value_name = "WxH", env = "TWINLIGHT_SIZE", help_heading = "Quality")]
     pub size: Option<Size>,
-    /// Samples per pixel [default: the scene's, else 64; unlimited with --time]
-    #[arg(long, value_name = "N", env = "TWINLIGHT_SPP", help_heading = "Quality", allow_negative_numbers = true,
+    #[arg(long, help = help("--spp"), long_help = long_help("--spp"), value_name = "N", env = "TWINLIGHT_SPP", help_heading = "Quality", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u32).range(1..=16_777_216))]
     pub spp: Option<u32>,
-    /// Times light may scatter: 0 shows emitters alone, 1 direct light, `unlimited` everything [default: the scene's, else
-    /// unlimited]; --method voxel gathers up to 64 times, and 3 times for `unlimited`
     #[arg(
         long,
+        help = help("--bounces"),
+        long_help = long_help("--bounces"),
         value_name = "N",
         env = "TWINLIGHT_BOUNCES",
         help_heading = "Quality",
@@ -42,9 +42,10 @@ pub struct PictureArgs {
         allow_negative_numbers = true
     )]
     pub seed: Option<u32>,
-    /// Where random numbers come from
     #[arg(
         long,
+        help = help("--sampler"),
+        long_help = long_help("--sampler"),
         value_name = "NAME",
         env = "TWINLIGHT_SAMPLER",
         default_value = "sobol",
@@ -58,9 +59,7 @@ pub struct PictureArgs {
     /// `twinlight plan` says what that means for a scene.
     #[arg(long, value_name = "LIST", env = "TWINLIGHT_EFFECTS", default_value = "auto", value_parser = effects, help_heading = "Quality")]
     pub effects: Effects,
-    /// Most that a pixel may lack because of what --effects auto leaves out, as a share of the exposure's white [default: 1/255;
-    /// 0 for --method reference, which leaves out only what isn't there]
-    #[arg(long, value_name = "SHARE", env = "TWINLIGHT_TOLERANCE", value_parser = tolerance, help_heading = "Quality",
+    #[arg(long, help = help("--tolerance"), long_help = long_help("--tolerance"), value_name = "SHARE", env = "TWINLIGHT_TOLERANCE", value_parser = tolerance, help_heading = "Quality",
           allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
 

@@ -10,6 +10,7 @@ use std::time::Duration;
 use twinlight::directions::DirectionSet;
 use twinlight::io::LoadOptions;
 use twinlight::kernels::filter_indirect::MAX_WINDOW;
+use twinlight::methods::cost::knobs::{help, long_help};
 use twinlight::methods::post::tonemap::Operator;
 use twinlight::methods::reference::Sampler;
 use twinlight::methods::slhb::{Elements, Shadows};
@@ -31,6 +32,9 @@ Examples:
 Ctrl-C ends the render and saves what is finished (exit code 130), of a sequence the frames that are complete; twice: at
 once, nothing is saved.";
 
+/// What a scene may need, unless a flag says otherwise.
+pub const MAX_MEMORY: &str = "16GiB";
+
 /// Where a scene comes from and what it may need.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Reading the scene")]
@@ -39,7 +43,7 @@ pub struct LoadArgs {
     #[arg(long, value_name = "DIR", env = "TWINLIGHT_ALLOW_PATH")]
     pub allow_path: Vec<PathBuf>,
     /// Refuse what would need more memory than this, such as 4GiB
-    #[arg(long, value_name = "BYTES", env = "TWINLIGHT_MAX_MEMORY", default_value = "16GiB")]
+    #[arg(long, value_name = "BYTES", env = "TWINLIGHT_MAX_MEMORY", default_value = MAX_MEMORY)]
     pub max_memory: Bytes,
     /// Drop triangles with vertices that are no numbers, instead of refusing the scene
     #[arg(long)]
@@ -237,38 +241,25 @@ pub enum GatherName {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Method slhb")]
 pub struct SlhbArgs {
-    /// Directions that hit buffers are built for: a number, or icosahedron:N, octahedron:N, halton:N, uv:ROWSxCOLUMNS
-    #[arg(long, value_name = "SET", env = "TWINLIGHT_DIRECTIONS", default_value = "320", value_parser = direction_set)]
+    #[arg(long, help = help("--directions"), long_help = long_help("--directions"), value_name = "SET", env = "TWINLIGHT_DIRECTIONS", default_value = "320", value_parser = direction_set)]
     pub directions: DirectionSet,
-    /// Pixels per row and column of a hit buffer, 1 to 1024
-    #[arg(long, value_name = "N", env = "TWINLIGHT_LHB_SIZE", default_value_t = 128, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(long, help = help("--lhb-size"), long_help = long_help("--lhb-size"), value_name = "N", env = "TWINLIGHT_LHB_SIZE", default_value_t = 128, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub lhb_size: u32,
-    /// Surfaces that a pixel of a hit buffer keeps: all, or the nearest N
-    #[arg(long, value_name = "N", env = "TWINLIGHT_LAYERS", default_value = "all")]
+    #[arg(long, help = help("--layers"), long_help = long_help("--layers"), value_name = "N", env = "TWINLIGHT_LAYERS", default_value = "all")]
     pub layers: Layers,
-    /// How their elements are stored: full, packed (half the bytes each, depths to 1/4096 of the scene), or layers:K (packed, the nearest K)
-    #[arg(long, value_name = "FORMAT", env = "TWINLIGHT_ELEMENTS", default_value = "full", value_parser = elements)]
+    #[arg(long, help = help("--elements"), long_help = long_help("--elements"), value_name = "FORMAT", env = "TWINLIGHT_ELEMENTS", default_value = "full", value_parser = elements)]
     pub elements: Elements,
-    /// Whether lookups follow the ray or its nearest direction alone
-    #[arg(long, value_name = "HOW", env = "TWINLIGHT_CONE", default_value = "auto")]
+    #[arg(long, help = help("--cone"), long_help = long_help("--cone"), value_name = "HOW", env = "TWINLIGHT_CONE", default_value = "auto")]
     pub cone: ConeName,
-    /// What becomes of rays that lookups find nothing for
-    #[arg(long, value_name = "HOW", env = "TWINLIGHT_MISSES", default_value = "trace")]
+    #[arg(long, help = help("--misses"), long_help = long_help("--misses"), value_name = "HOW", env = "TWINLIGHT_MISSES", default_value = "trace")]
     pub misses: MissesName,
-    /// Which shadow rays are looked up instead of traced
-    #[arg(long, value_name = "WHICH", env = "TWINLIGHT_SHADOWS", default_value = "rays")]
+    #[arg(long, help = help("--shadows"), long_help = long_help("--shadows"), value_name = "WHICH", env = "TWINLIGHT_SHADOWS", default_value = "rays")]
     pub shadows: ShadowsName,
-    /// Whether the first vertex of each path gathers light along all directions
-    #[arg(long, value_name = "WHAT", env = "TWINLIGHT_GATHER", default_value = "off")]
+    #[arg(long, help = help("--gather"), long_help = long_help("--gather"), value_name = "WHAT", env = "TWINLIGHT_GATHER", default_value = "off")]
     pub gather: GatherName,
-    /// Let diffuse surfaces scatter by the same random numbers in every tile of N x N pixels, 1 to 32, so that --filter N finds all of them; 1 is off
-    #[arg(long, value_name = "N", env = "TWINLIGHT_INTERLEAVE", default_value_t = 1, value_parser = window())]
+    #[arg(long, help = help("--interleave"), long_help = long_help("--interleave"), value_name = "N", env = "TWINLIGHT_INTERLEAVE", default_value_t = 1, value_parser = window())]
     pub interleave: u32,
-    /// Average indirect light over N x N pixels that show the same diffuse surface, 1 to 32; 1 is off
-    ///
-    /// Noise falls to about an Nth where so many are averaged, and contact shadows of indirect light are blurred over N pixels. Mirrors, glass
-    /// and glossy surfaces stay as they are, and so does direct light.
-    #[arg(long, value_name = "N", env = "TWINLIGHT_FILTER", default_value_t = 1, value_parser = window())]
+    #[arg(long, help = help("--filter"), long_help = long_help("--filter"), value_name = "N", env = "TWINLIGHT_FILTER", default_value_t = 1, value_parser = window())]
     pub filter: u32,
 }
 

@@ -1,5 +1,6 @@
 //! Values of flags, parsed with messages that show the form.
 
+use std::fmt;
 use std::str::FromStr;
 use twinlight::scene::Camera;
 
@@ -42,6 +43,14 @@ impl FromStr for CameraArg {
         // An eye in its own target and the like: found here, where the flag can be named.
         camera.record(1, 1, [0.0; 3]).map_err(|e| e.to_string())?;
         Ok(Self(camera))
+    }
+}
+
+impl fmt::Display for CameraArg {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |[x, y, z]: [f64; 3]| format!("{x},{y},{z}");
+        let Camera { position, target, up, vfov_degrees } = self.0;
+        write!(f, "{} {} {} {vfov_degrees}", list(position), list(target), list(up))
     }
 }
 
@@ -199,6 +208,7 @@ mod tests {
             ([0.0, 1.0, 3.0], [0.0, 1.0, 0.0], 40.0)
         );
         let CameraArg(camera) = "0,1,3 0,1,0 1,1,0 35.5".parse().unwrap();
+        assert_eq!(CameraArg(camera).to_string(), "0,1,3 0,1,0 1,1,0 35.5");
         assert_eq!((camera.up, camera.vfov_degrees), ([1.0, 1.0, 0.0], 35.5));
         for bad in
             ["", "0,1 0,1,0 40", "0,1,3 0,1,0", "0,1,3 0,1,3 40", "0,0,3 0,0,0 180", "nan,0,0 0,0,1 40"]

@@ -3,24 +3,21 @@
 use clap::Args;
 use twinlight::kernels::light_voxels::MAX_SAMPLES;
 use twinlight::lattice::MAX_VOXELS;
+use twinlight::methods::cost::knobs::{help, long_help};
 use twinlight::methods::voxel::{Cones, Storage, VoxelSettings};
 
 /// Knobs of the method voxel.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Method voxel")]
 pub struct VoxelArgs {
-    /// Voxels along the scene's longest side, 1 to 512
-    #[arg(long, value_name = "N", env = "TWINLIGHT_GRID", default_value_t = VoxelSettings::default().grid,
+    #[arg(long, help = help("--grid"), long_help = long_help("--grid"), value_name = "N", env = "TWINLIGHT_GRID", default_value_t = VoxelSettings::default().grid,
           value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_VOXELS)))]
     pub grid: u32,
-    /// What voxels store of the light that leaves them: iso (a colour), aniso (one per face), sh (spherical harmonics) or sh8 (those in bytes)
-    #[arg(long, value_name = "NAME", env = "TWINLIGHT_STORAGE", default_value_t = VoxelSettings::default().storage, value_parser = storage)]
+    #[arg(long, help = help("--storage"), long_help = long_help("--storage"), value_name = "NAME", env = "TWINLIGHT_STORAGE", default_value_t = VoxelSettings::default().storage, value_parser = storage)]
     pub storage: Storage,
-    /// Cones that gather diffuse light: 6 (of 60 degrees, a sample per level), or generic:N (4 to 256 narrower ones, slower and smoother; generic is generic:16)
-    #[arg(long, value_name = "HOW", env = "TWINLIGHT_CONES", default_value_t = VoxelSettings::default().cones, value_parser = cones)]
+    #[arg(long, help = help("--cones"), long_help = long_help("--cones"), value_name = "HOW", env = "TWINLIGHT_CONES", default_value_t = VoxelSettings::default().cones, value_parser = cones)]
     pub cones: Cones,
-    /// Shadow rays per voxel
-    #[arg(long, value_name = "N", env = "TWINLIGHT_LIGHT_SAMPLES", default_value_t = VoxelSettings::default().light_samples,
+    #[arg(long, help = help("--light-samples"), long_help = long_help("--light-samples"), value_name = "N", env = "TWINLIGHT_LIGHT_SAMPLES", default_value_t = VoxelSettings::default().light_samples,
           value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub light_samples: u32,
 }

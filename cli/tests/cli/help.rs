@@ -20,6 +20,7 @@ fn every_command_has_examples() {
         &["render"][..],
         &["plan"],
         &["compare"],
+        &["cost"],
         &["conform"],
         &["completions"],
         &["scene", "inspect"],

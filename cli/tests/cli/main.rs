@@ -1,6 +1,7 @@
 //! The command as a user meets it: files, exit codes, texts, signals.
 
 mod compare;
+mod cost;
 mod errors;
 mod help;
 mod motion;

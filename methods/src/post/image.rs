@@ -78,7 +78,7 @@ impl Image {
     }
 
     /// `Err(SizeMismatch)` unless both images have one size.
-    pub(super) fn expect_same_size(&self, other: &Self) -> Result<(), PostError> {
+    pub(crate) fn expect_same_size(&self, other: &Self) -> Result<(), PostError> {
         let (left, right) = ((self.width, self.height), (other.width, other.height));
         if left == right { Ok(()) } else { Err(PostError::SizeMismatch { left, right }) }
     }
