@@ -41,7 +41,7 @@ impl Told<'_> {
             "display": format!("exposure {} stops, curve {}", args.tone.exposure, args.tone.tonemap.key()),
             "reference": self.reference()?,
             "metrics": METRICS.map(metric),
-            "methods": METHODS.iter().filter(|(key, _)| study.methods.contains(key))
+            "methods": METHODS.iter().filter(|(key, _)| self.is_told(key))
                 .map(|(key, title)| json!({ "key": key, "title": title })).collect::<Vec<_>>(),
             "knobs": self.knobs(),
             "points": points.iter().enumerate().map(of_point).collect::<Vec<_>>(),
@@ -61,9 +61,14 @@ impl Told<'_> {
         }))
     }
 
+    /// Whether a method was asked for, or measured by an earlier run.
+    fn is_told(&self, method: &str) -> bool {
+        let mut points = self.study.records.points();
+        self.study.methods.contains(&method) || points.any(|point| point.setting.method == method)
+    }
+
     fn knobs(&self) -> Vec<Value> {
-        let is_told = |method: &str| method == "all" || self.study.methods.contains(&method);
-        let knobs = KNOBS.iter().filter(|knob| is_told(knob.method));
+        let knobs = KNOBS.iter().filter(|knob| knob.method == "all" || self.is_told(knob.method));
         knobs
             .map(|knob| {
                 json!({

@@ -1,6 +1,7 @@
 //! The reference: what every picture is judged by.
 
 use super::pictures::Pictures;
+use super::progress::State;
 use super::setup::Setup;
 use crate::exit::{Failure, Stage};
 use std::cell::Cell;
@@ -54,7 +55,8 @@ impl Judge {
         if let Some((reference, taken)) = pictures.kept_reference() {
             return Ok(Some(Self { reference, taken: Some(taken) }));
         }
-        setup.progress.begin(0.0, args.time_limit, 0, "the reference");
+        let state = State { spent: 0.0, limit: args.time_limit, points: 0, planned: 0 };
+        setup.progress.begin(&state, "the reference");
         let start = Instant::now();
         let Some((first, samples)) = half(setup, backend, SEEDS[0])? else { return Ok(None) };
         let Some((second, more)) = half(setup, backend, SEEDS[1])? else { return Ok(None) };

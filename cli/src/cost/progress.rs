@@ -9,6 +9,25 @@ use std::io::{IsTerminal, stderr};
 /// Steps of the bar.
 const STEPS: u64 = 1000;
 
+/// How far a study is.
+pub struct State {
+    /// Seconds so far.
+    pub spent: f64,
+    /// Seconds at most.
+    pub limit: f64,
+    /// Settings that are measured.
+    pub points: usize,
+    /// Settings that will be if there is time; more may follow.
+    pub planned: usize,
+}
+
+impl State {
+    /// Seconds to go, at most.
+    fn left(&self) -> f64 {
+        (self.limit - self.spent).max(0.0)
+    }
+}
+
 /// Shows how far a study is.
 pub enum Display {
     /// A bar that redraws itself.
@@ -32,19 +51,22 @@ impl Display {
         }
     }
 
-    /// `doing` begins, with `spent` of `limit` seconds gone and so many settings measured.
-    pub fn begin(&self, spent: f64, limit: f64, points: usize, doing: &str) {
-        let left = (limit - spent).max(0.0);
+    /// `doing` begins.
+    pub fn begin(&self, state: &State, doing: &str) {
+        let (left, points, planned) = (state.left(), state.points, state.planned);
+        let line = || format!("{points} settings, {planned} to come, {left:.0} s left: {doing}");
         match self {
             Self::Bar(bar) => {
                 // A bar that was taken away comes back.
                 bar.reset();
-                bar.set_position((spent / limit * STEPS as f64) as u64);
-                bar.set_message(format!("{points} settings, at most {left:.0} s left: {doing}"));
+                bar.set_position((state.spent / (state.spent + left) * STEPS as f64) as u64);
+                bar.set_message(line());
             }
-            Self::Plain => report::status(&format!("{points:4} settings, at most {left:.0} s left: {doing}")),
+            Self::Plain => report::status(&line()),
             Self::Json => {
-                let line = json!({ "points": points, "spent_s": spent, "left_s": left, "doing": doing });
+                let line = json!({
+                    "points": points, "planned": planned, "spent_s": state.spent, "left_s": left, "doing": doing,
+                });
                 report::status(&line.to_string());
             }
             Self::Silent => {}

@@ -133,14 +133,23 @@ impl Point {
 }
 
 impl Record {
+    /// What it is about; `None` where the sweep has changed since.
+    fn setting(&self) -> Option<Setting> {
+        match &self.what {
+            What::Point(Point { setting, .. })
+            | What::Failed { setting, .. }
+            | What::Split(Parts { setting, .. }) => setting.setting(),
+        }
+    }
+
     /// For the search of what to measure next. Its fronts are those of relMSE and ꟻLIP: one of radiance, one of what is seen.
     pub fn tried(&self) -> Option<Tried> {
-        let (setting, seconds, errors) = match &self.what {
-            What::Point(point) => (&point.setting, point.seconds.median, point.distances()[..2].to_vec()),
-            What::Failed { setting, .. } => (setting, f64::NAN, vec![f64::NAN; 2]),
+        let (seconds, errors) = match &self.what {
+            What::Point(point) => (point.seconds.median, point.distances()[..2].to_vec()),
+            What::Failed { .. } => (f64::NAN, vec![f64::NAN; 2]),
             What::Split(_) => return None,
         };
-        Some(Tried { setting: setting.setting()?, seconds, errors, spent: self.spent })
+        Some(Tried { setting: self.setting()?, seconds, errors, spent: self.spent })
     }
 }
 
@@ -152,7 +161,8 @@ pub struct Records {
 }
 
 impl Records {
-    /// Reads what was measured under the conditions of `key`. Lines of other conditions, and one that a crash left half-written, are passed over.
+    /// Reads what was measured under the conditions of `key`. Lines of other conditions, those of settings that the sweep has no more, and one that
+    /// a crash left half-written are passed over.
     ///
     /// # Errors
     /// [`Error::Io`] unless there is no such file.
@@ -163,7 +173,7 @@ impl Records {
             Err(source) => return Err(io(&path, source)),
         };
         let lines = bytes.split(|&byte| byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok());
-        let all = lines.filter(|record: &Record| record.key == key).collect();
+        let all = lines.filter(|record: &Record| record.key == key && record.setting().is_some()).collect();
         Ok(Self { path, key: key.into(), all })
     }
 

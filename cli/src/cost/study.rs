@@ -3,6 +3,7 @@
 use super::judge::Judge;
 use super::page::title;
 use super::pictures::Pictures;
+use super::progress::State;
 use super::records::{Point, Records, StepLine, What, Words};
 use super::setup::Setup;
 use crate::exit::{Failure, Stage};
@@ -56,14 +57,22 @@ impl Study<'_> {
 
     /// Says what is done next.
     pub fn begin(&self, doing: &str) {
-        let limit = self.setup.args.time_limit;
-        self.setup.progress.begin(self.spent(), limit, self.records.points().count(), doing);
+        let state = State {
+            spent: self.spent(),
+            limit: self.setup.args.time_limit,
+            points: self.records.points().count(),
+            planned: self.sweep.planned(&self.tried()),
+        };
+        self.setup.progress.begin(&state, doing);
+    }
+
+    fn tried(&self) -> Vec<Tried> {
+        self.records.all().iter().filter_map(|record| record.tried()).collect()
     }
 
     fn settings<B: Backend>(&mut self, backend: &B) -> Result<End, Failure> {
         loop {
-            let tried: Vec<Tried> = self.records.all().iter().filter_map(|record| record.tried()).collect();
-            let Some(setting) = self.sweep.next(&tried) else { return Ok(End::Complete) };
+            let Some(setting) = self.sweep.next(&self.tried()) else { return Ok(End::Complete) };
             if self.spent() + self.splits_to_come() >= self.setup.args.time_limit {
                 return Ok(End::Time);
             }

@@ -55,7 +55,7 @@ pub const KNOBS: &[Knob] = &[
         method: "all",
         flag: "--bounces",
         help: "Times light may scatter: 0 shows emitters alone, 1 direct light, `unlimited` everything [default: the scene's, else unlimited]; --method voxel gathers up to 64 times, and 3 times for `unlimited`",
-        unit: "",
+        unit: "bounces",
         range: "0 to 4294967294, or unlimited",
         default: "unlimited",
         trades: "light that was scattered often, which makes white rooms bright, against time",
@@ -78,7 +78,7 @@ pub const KNOBS: &[Knob] = &[
         flag: "--tolerance",
         help: "Most that a pixel may lack because of what --effects auto leaves out, as a share of the exposure's white [default: 1/255; 0 for --method reference, which leaves out only what isn't there]",
         unit: "of white",
-        range: "0 on",
+        range: "0 or more",
         default: "1/255",
         trades: "light too faint to be seen against the bounces and effects that it takes",
         kernel: "",
@@ -100,7 +100,7 @@ pub const KNOBS: &[Knob] = &[
         flag: "--directions",
         help: "Directions that hit buffers are built for: a number, or icosahedron:N, octahedron:N, halton:N, uv:ROWSxCOLUMNS",
         unit: "directions",
-        range: "20, 80, 320, 1280 and other sets",
+        range: "20, 80, 320, 1280 or other",
         default: "320",
         trades: "bands and blurred reflections of few directions against memory and time to build, which grow as their number",
         kernel: "rasterize_lhb",
@@ -122,7 +122,7 @@ pub const KNOBS: &[Knob] = &[
         flag: "--layers",
         help: "Surfaces that a pixel of a hit buffer keeps: all, or the nearest N",
         unit: "layers",
-        range: "1 on, or all",
+        range: "1 or more, or all",
         default: "all",
         trades: "light from surfaces behind others, which few layers lose, against memory",
         kernel: "rasterize_lhb",
@@ -232,11 +232,11 @@ pub const KNOBS: &[Knob] = &[
         flag: "--cones",
         help: "Cones that gather diffuse light: 6 (of 60 degrees, a sample per level), or generic:N (4 to 256 narrower ones, slower and smoother; generic is generic:16)",
         unit: "cones",
-        range: "6, generic:4 to generic:256",
+        range: "6, or generic:4 to generic:256",
         default: "6",
         trades: "light that is blurred over wide angles against time, which grows as their number",
         kernel: "trace_cones",
-        sweep: range(&["6", "generic:16", "generic:64"], "6", "generic:64"),
+        sweep: range(&["6", "generic:8", "generic:32"], "6", "generic:32"),
     },
     Knob {
         method: "voxel",
@@ -247,7 +247,7 @@ pub const KNOBS: &[Knob] = &[
         default: "8",
         trades: "blotches of light that few rays leave on voxels against time",
         kernel: "light_voxels",
-        sweep: range(&["1", "8", "32"], "8", "32"),
+        sweep: range(&["1", "8", "32"], "8", "8"),
     },
 ];
 
@@ -269,17 +269,10 @@ pub fn long_help(flag: &str) -> String {
 /// The table as Markdown: what `KNOBS.md` holds.
 pub fn markdown() -> String {
     let row = |knob: &Knob| {
-        let range = [knob.range, knob.unit].join(" ");
-        format!(
-            "| `{}` | {} | {} | {} | {} |\n",
-            knob.flag,
-            knob.method,
-            range.trim_end(),
-            knob.default,
-            knob.trades
-        )
+        let Knob { method, flag, unit, range, default, trades, .. } = knob;
+        format!("| `{flag}` | {method} | {range} | {unit} | {default} | {trades} |\n")
     };
-    let head = "| flag | method | range | default | trades |\n|---|---|---|---|---|\n";
+    let head = "| flag | method | range | unit | default | trades |\n|---|---|---|---|---|---|\n";
     head.to_owned() + &KNOBS.iter().map(row).collect::<String>()
 }
 
@@ -305,7 +298,7 @@ mod tests {
             let place = |value| range.values.iter().position(|other| *other == value);
             assert!(place(range.begin).is_some(), "{}", knob.flag);
             let last = place(range.finest).unwrap() + 1 == range.values.len();
-            assert!(last || knob.flag == "--spp", "{}: from coarse to fine", knob.flag);
+            assert!(last || ["--spp", "--light-samples"].contains(&knob.flag), "{}", knob.flag);
             assert!(knob.method == "all" || range.begin == knob.default, "{}", knob.flag);
         }
     }

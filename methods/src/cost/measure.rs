@@ -83,6 +83,13 @@ struct Run {
     calls: Vec<Calls>,
 }
 
+/// The first run.
+struct First {
+    radiance: Vec<[f32; 3]>,
+    bytes: u64,
+    run: Run,
+}
+
 /// Renders what the plan says, once to warm up and then a few times; all runs are timed but the first, if that is short. Every call waits
 /// for the device. `scene_bytes` are those of the scene as it is resident; `go_on` is asked after every pass: `None` when it said no.
 ///
@@ -97,10 +104,10 @@ pub fn measure<B: Backend>(
     effort: &Effort,
     go_on: impl Fn() -> bool,
 ) -> Result<Option<Measured>> {
-    let Some((radiance, bytes, first)) = first(backend, scene, camera, plan, &go_on)? else {
+    let Some(First { radiance, bytes, run }) = first(backend, scene, camera, plan, &go_on)? else {
         return Ok(None);
     };
-    let mut runs: Vec<Run> = Some(first).filter(|run| run.seconds > effort.seconds).into_iter().collect();
+    let mut runs: Vec<Run> = Some(run).filter(|run| run.seconds > effort.seconds).into_iter().collect();
     let mut spent: f64 = runs.iter().map(|run| run.seconds).sum();
     while runs.len() < effort.least || (runs.len() < effort.most && spent < effort.seconds) {
         let Some(run) = timed(backend, scene, camera, plan, &go_on)? else { return Ok(None) };
@@ -122,7 +129,7 @@ fn first<B: Backend>(
     camera: &Camera,
     plan: &Plan,
     go_on: &impl Fn() -> bool,
-) -> Result<Option<(Vec<[f32; 3]>, u64, Run)>> {
+) -> Result<Option<First>> {
     let (metered, start) = (Metered::waiting(backend), Instant::now());
     let backend = &metered;
     let scene = &*plan.edits.apply(scene);
@@ -142,7 +149,8 @@ fn first<B: Backend>(
     let run = Run { seconds: start.elapsed().as_secs_f64(), calls: metered.calls() };
     let pixels = u64::from(settings.width) * u64::from(settings.height);
     let images = pixels * (size_of::<FilmTexel>() + size_of::<GBufferTexel>()) as u64;
-    Ok(Some((Picture { rendered, surfaces }.radiance(), buffers + voxels + images, run)))
+    let radiance = Picture { rendered, surfaces }.radiance();
+    Ok(Some(First { radiance, bytes: buffers + voxels + images, run }))
 }
 
 fn timed<B: Backend>(

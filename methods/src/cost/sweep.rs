@@ -80,7 +80,7 @@ impl Sweep {
         candidates.into_iter().next().map(|(_, _, setting)| setting)
     }
 
-    /// How many of the settings that are measured whatever comes out are left.
+    /// How many settings are to come whatever comes out; exploring may add to them.
     pub fn planned(&self, tried: &[Tried]) -> usize {
         let known: HashSet<&Setting> = tried.iter().map(|tried| &tried.setting).collect();
         let settings = self.methods.iter().flat_map(|opening| &opening.settings);

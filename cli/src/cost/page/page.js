@@ -822,7 +822,7 @@ function drawKnobs() {
   $("knobs-section").hidden = data.knobs.length === 0;
   const rows = data.knobs.map(knob => el("tr", {},
     el("td", { class: "whole" }, el("code", {}, knob.flag)),
-    el("td", { class: "whole" }, marker(knob.method), " ", methodTitle(knob.method)),
+    el("td", { class: "whole" }, ...(methodIndex(knob.method) < 0 ? ["every method"] : [marker(knob.method), " ", methodTitle(knob.method)])),
     el("td", {}, knob.unit ? `${knob.range} ${knob.unit}` : knob.range), el("td", {}, knob.default), el("td", {}, knob.trades)));
   $("knobs").replaceChildren(table([{ label: "option" }, { label: "method" }, { label: "range" }, { label: "default" }, { label: "trades" }], rows));
 }
