@@ -5,6 +5,7 @@ mod probe;
 mod table;
 
 pub use choose::{Chosen, Wish};
+pub use probe::{Effort, Probe, probe};
 
 use crate::args::{Cli, Command, RenderArgs};
 use crate::device::Device;
@@ -13,7 +14,6 @@ use crate::report;
 use crate::source::{self, Prepared};
 use choose::{Subject, of_own, of_shipped};
 use clap::Parser;
-use probe::{Probe, probe};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use table::{Table, shipped};
@@ -62,7 +62,8 @@ pub fn settle(
         Wish::Flip(_) => MOST_LOOKING / 4,
     };
     let bounces = args.picture.bounces.map_or(prepared.settings.bounces, |bounces| bounces.0);
-    let look = look(device, prepared, &camera, bounces, time).map_err(Failure::at(Stage::Device))?;
+    let look =
+        look(device, prepared, &camera, bounces, Effort::Time(time)).map_err(Failure::at(Stage::Device))?;
     let mut subject = Subject {
         triangles: prepared.scene.triangle_count() as f64,
         pixels: f64::from(size[0]) * f64::from(size[1]),
@@ -100,12 +101,12 @@ fn look(
     prepared: &Prepared,
     camera: &Camera,
     bounces: Option<u32>,
-    time: Duration,
+    effort: Effort,
 ) -> twinlight::Result<Probe> {
     match device {
-        Device::Cpu(backend) => probe(backend, &prepared.compiled, camera, bounces, time),
+        Device::Cpu(backend) => probe(backend, &prepared.compiled, camera, bounces, effort),
         #[cfg(feature = "gpu")]
-        Device::Gpu(backend) => probe(&**backend, &prepared.compiled, camera, bounces, time),
+        Device::Gpu(backend) => probe(&**backend, &prepared.compiled, camera, bounces, effort),
     }
 }
 
@@ -116,10 +117,11 @@ fn machine(device: &Device, tables: &[Table]) -> twinlight::Result<f64> {
     let (Some(known), Some(scene)) = (known, fixtures::scenes::builtin(MACHINE.0)) else { return Ok(1.0) };
     let Some(camera) = Camera::of_scene(&scene) else { return Ok(1.0) };
     let compiled = compile(&scene, &Limits::default())?;
+    let (bounces, effort) = (Some(MEASURED_BOUNCES), Effort::Time(MACHINE.1));
     let found = match device {
-        Device::Cpu(backend) => probe(backend, &compiled, &camera, Some(MEASURED_BOUNCES), MACHINE.1)?,
+        Device::Cpu(backend) => probe(backend, &compiled, &camera, bounces, effort)?,
         #[cfg(feature = "gpu")]
-        Device::Gpu(backend) => probe(&**backend, &compiled, &camera, Some(MEASURED_BOUNCES), MACHINE.1)?,
+        Device::Gpu(backend) => probe(&**backend, &compiled, &camera, bounces, effort)?,
     };
     Ok(found.per_sample / known.per_sample)
 }

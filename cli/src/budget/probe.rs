@@ -20,7 +20,16 @@ pub struct Probe {
 /// Pixels per row and column: enough for a mean, few enough for a look.
 const SIZE: u32 = 64;
 
-/// Renders for about `time`, with independent samples, whose spread says how noisy they are.
+/// How long a look is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// About so long.
+    Time(Duration),
+    /// So many samples per pixel: the same noise and the same share of indirect light every time.
+    Samples(u32),
+}
+
+/// Renders for a while, with independent samples, whose spread says how noisy they are.
 ///
 /// # Errors
 /// What the backend refuses.
@@ -29,16 +38,20 @@ pub fn probe<B: Backend>(
     scene: &CompiledScene,
     camera: &Camera,
     bounces: Option<u32>,
-    time: Duration,
+    effort: Effort,
 ) -> Result<Probe> {
+    let (samples, time) = match effort {
+        Effort::Time(time) => (1 << 16, time),
+        Effort::Samples(samples) => (samples, Duration::MAX),
+    };
     let resident = backend.upload_scene(scene)?;
     let settings = Settings {
         width: SIZE,
         height: SIZE,
-        samples: 1 << 16,
+        samples,
         bounces,
         sampler: Sampler::Independent,
-        pass: (time / 8).max(Duration::from_millis(2)),
+        pass: (time / 8).clamp(Duration::from_millis(2), Duration::from_millis(250)),
         ..Settings::default()
     };
     let start = Instant::now();

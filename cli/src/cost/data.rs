@@ -4,6 +4,7 @@ use super::base64;
 use super::kernels;
 use super::records::{Parts, Point};
 use super::study::Study;
+use crate::budget::Probe;
 use crate::exit::Failure;
 use serde_json::{Map, Value, json};
 use twinlight::BackendInfo;
@@ -15,6 +16,8 @@ pub struct Told<'a> {
     pub study: &'a Study<'a>,
     pub info: BackendInfo,
     pub is_complete: bool,
+    /// What tells the scene from others.
+    pub look: Probe,
 }
 
 impl Told<'_> {
@@ -40,6 +43,7 @@ impl Told<'_> {
             "backend": { "kind": self.info.kind, "device": self.info.device, "driver": self.info.driver, "mode": mode },
             "display": format!("exposure {} stops, curve {}", args.tone.exposure, args.tone.tonemap.key()),
             "reference": self.reference()?,
+            "look": { "noise": self.look.noise, "indirect": self.look.indirect },
             "metrics": METRICS.map(metric),
             "methods": METHODS.iter().filter(|(key, _)| self.is_told(key))
                 .map(|(key, title)| json!({ "key": key, "title": title })).collect::<Vec<_>>(),

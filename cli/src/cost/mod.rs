@@ -16,6 +16,7 @@ mod study;
 mod table;
 
 use crate::args::{CostArgs, MethodName};
+use crate::budget::{Effort, Probe, probe};
 use crate::device::{self, Device};
 use crate::exit::{Failure, Stage};
 use crate::interrupt::Interrupt;
@@ -75,13 +76,25 @@ fn on_backend<B: Backend>(setup: &Setup, backend: &B) -> Result<(), Failure> {
     let end = study.run(backend);
     setup.progress.clear();
     let end = end?;
-    write(&Told { study: &study, info, is_complete: end == End::Complete }, &folder)?;
+    let look = look(setup, backend)?;
+    write(&Told { study: &study, info, is_complete: end == End::Complete, look }, &folder)?;
     let count = study.records.points().count();
     report::status(&format!("{count} settings, {} of them new, in {:.0} s", count - before, study.spent()));
     match end {
         End::Signal(signal) => Err(Failure::Signal(signal)),
         End::Complete | End::Time => Ok(()),
     }
+}
+
+/// Samples per pixel by which scenes are told apart.
+const LOOK: u32 = 16;
+
+/// What `render --budget` knows this scene by.
+fn look<B: Backend>(setup: &Setup, backend: &B) -> Result<Probe, Failure> {
+    let job = setup.job("reference", vec![("--spp", "1".into())], setup.args.seed)?;
+    let scene = &setup.prepared.compiled;
+    probe(backend, scene, &job.camera, setup.bounces, Effort::Samples(LOOK))
+        .map_err(Failure::at(Stage::Device))
 }
 
 /// Of the conditions. What a render takes from the environment is read as a render reads it.

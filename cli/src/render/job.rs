@@ -1,6 +1,7 @@
 //! What to render: flags before the scene's own settings before defaults.
 
 use crate::args::{Bounces, ConeName, GatherName, MethodName, MissesName, PictureArgs, Size, SlhbArgs};
+use crate::budget::{Chosen, Wish};
 use crate::exit::{Failure, Stage};
 use crate::source::Prepared;
 use clap::ValueEnum;
@@ -28,10 +29,14 @@ pub struct Job {
     pub plan: Plan,
     /// Time to make the plan.
     pub plan_time: Duration,
+    /// When work on the compiled scene began.
+    pub begin: Instant,
     /// Time limit of sampling.
     pub time: Option<Duration>,
     /// When sampling is to end, whenever it began.
     pub deadline: Option<Instant>,
+    /// What method and knobs were chosen by, if they were.
+    pub chosen: Option<(Wish, Chosen)>,
     /// Where from.
     pub camera: Camera,
 }
@@ -58,11 +63,20 @@ impl Job {
         };
         let start = Instant::now();
         let plan = Plan::new(&prepared.compiled, &camera, &request).map_err(Failure::at(Stage::Input))?;
-        Ok(Self { plan, plan_time: start.elapsed(), time, deadline: None, camera })
+        Ok(Self {
+            plan,
+            plan_time: start.elapsed(),
+            begin: start,
+            time,
+            deadline: None,
+            chosen: None,
+            camera,
+        })
     }
 
     /// Everything is to be done at `begin` + `budget`, of which work after sampling takes `after`.
     pub fn end_by(&mut self, begin: Instant, budget: Duration, after: Duration) {
+        self.begin = begin;
         self.deadline = Some(begin + budget.saturating_sub(after));
         let picture = &mut self.plan.request.picture;
         // A pass can't be ended: the last one may be a twentieth too long.

@@ -79,8 +79,11 @@ fn picture(
     let settled = args.wish().map(|wish| budget::settle(args, wish, &prepared, &opened.0)).transpose()?;
     let args = settled.as_ref().map_or(args, |settled| &settled.args);
     let mut job = Job::new(&args.picture, args.time, &prepared)?;
-    if let (Some(settled), Some(Wish::Within(budget))) = (&settled, args.wish()) {
-        job.end_by(begin, budget, Duration::from_secs_f64(settled.chosen.after));
+    if let Some((settled, wish)) = settled.as_ref().zip(args.wish()) {
+        if let Wish::Within(budget) = wish {
+            job.end_by(begin, budget, Duration::from_secs_f64(settled.chosen.after));
+        }
+        job.chosen = Some((wish, settled.chosen.clone()));
     }
     let mut studio = Studio::new(args, tone, opened, watch()?);
     let rendered = studio.render(&prepared, &job, &mut progress::Display::new(args.progress, None))?;

@@ -153,7 +153,15 @@ mod tests {
         let request =
             Request { method: Method::Reference, picture: settings, effects: Effects::Auto, tolerance: 0.0 };
         let plan = Plan::new(&compiled, &camera, &request).unwrap();
-        let job = Job { plan, plan_time: Duration::ZERO, time: None, deadline: None, camera };
+        let job = Job {
+            plan,
+            plan_time: Duration::ZERO,
+            begin: Instant::now(),
+            time: None,
+            deadline: None,
+            chosen: None,
+            camera,
+        };
         // Batches have 1, 2, 4 … samples.
         for (lost_at, saved) in [(1, 0), (3, 1), (4, 3)] {
             let Some(gpu) = open() else { return };

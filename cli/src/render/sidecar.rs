@@ -5,6 +5,7 @@ use super::moment::Moment;
 use super::output::Outputs;
 use super::run::Done;
 use crate::args::RenderArgs;
+use crate::budget::Wish;
 use crate::source::{self, Prepared};
 use serde_json::{Value, json};
 use std::time::Duration;
@@ -14,6 +15,8 @@ use twinlight::methods::slhb::Elements;
 
 /// Times that only the command knows.
 pub struct Times {
+    /// From the compiled scene to the picture, the choice of a method included.
+    pub rendered: Duration,
     /// Writing pictures.
     pub write: Duration,
     /// Everything so far.
@@ -131,6 +134,12 @@ pub fn json(
             "driver": done.info.driver,
             "mode": if done.info.strict { "strict" } else { "portable" },
         },
+        "budget": job.chosen.as_ref().map(|(wish, chosen)| json!({
+            "seconds": match wish { Wish::Within(time) => Some(seconds(*time)), Wish::Flip(_) => None },
+            "flip": match wish { Wish::Within(_) => None, Wish::Flip(flip) => Some(*flip) },
+            "expected": { "seconds": chosen.seconds, "samples": chosen.samples, "relmse": chosen.relmse, "flip": chosen.flip },
+            "taken": seconds(times.rendered),
+        })),
         "plan": crate::plan::effects_json(plan),
         "result": {
             "stop": done.taken.stop.name(),

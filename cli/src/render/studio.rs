@@ -88,7 +88,8 @@ impl<'a> Studio<'a> {
         let write_start = Instant::now();
         let pictures = Pictures::new(&done.taken.film, done.surfaces.as_ref(), self.tone)?;
         outputs.write(&pictures, &sidecar::attributes(self.args, job, done, moment))?;
-        let times = sidecar::Times { write: write_start.elapsed(), total: start.elapsed() };
+        let rendered = write_start.duration_since(job.begin);
+        let times = sidecar::Times { rendered, write: write_start.elapsed(), total: start.elapsed() };
         let text = sidecar::json(self.args, prepared, job, done, moment, outputs, notices, &times);
         outputs.write_sidecar(&text)?;
         report::print(&outputs.list())

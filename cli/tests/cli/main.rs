@@ -1,5 +1,6 @@
 //! The command as a user meets it: files, exit codes, texts, signals.
 
+mod budget;
 mod compare;
 mod cost;
 mod errors;
