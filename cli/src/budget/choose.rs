@@ -137,8 +137,7 @@ fn chosen(expected: Vec<Expected>, wish: Wish, method: Option<&str>) -> Option<C
     let is_enough = found.is_some();
     let Choice { candidate, samples, seconds, .. } = found.or_else(|| match wish {
         Wish::Within(_) => quickest(&all),
-        // As good as it gets in a minute.
-        Wish::Flip(_) => best_within(&candidates(|e| e.flip), 60.0).or_else(|| quickest(&all)),
+        Wish::Flip(_) => least_measured(&expected),
     })?;
     let e = &expected[candidate];
     Some(Chosen {
@@ -151,6 +150,16 @@ fn chosen(expected: Vec<Expected>, wish: Wish, method: Option<&str>) -> Option<C
         after: e.once,
         is_enough,
     })
+}
+
+/// What comes nearest to no ꟻLIP at all with as many samples as were measured: more might take hours.
+fn least_measured(expected: &[Expected]) -> Option<Choice> {
+    let all = expected.iter().enumerate().map(|(candidate, e)| {
+        let samples = e.row.most_samples;
+        let seconds = e.build + e.once + e.per_sample * f64::from(samples);
+        Choice { candidate, samples, seconds, error: e.flip.at(samples) }
+    });
+    all.min_by(|a, b| a.error.total_cmp(&b.error))
 }
 
 #[cfg(test)]
@@ -168,6 +177,7 @@ mod tests {
             per_sample,
             relmse: curve,
             flip,
+            most_samples: 16,
         }
     }
 

@@ -42,6 +42,8 @@ pub struct Row {
     pub relmse: Curve,
     /// Of ꟻLIP.
     pub flip: Curve,
+    /// Most samples that were measured.
+    pub most_samples: u32,
 }
 
 /// Measured with one number of samples.
@@ -143,6 +145,7 @@ fn row(method: String, flags: Vec<(String, String)>, points: &[Point], pixels: f
         per_sample: sampling / (samples * pixels),
         relmse: curve(|point| point.relmse, false)?,
         flip: curve(|point| point.flip, true)?,
+        most_samples: points.iter().map(|point| point.samples).max()?,
     })
 }
 

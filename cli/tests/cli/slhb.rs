@@ -130,18 +130,20 @@ fn shadows_are_looked_up_where_asked_for() {
     assert!(failed.stderr.contains(text), "{}", failed.stderr);
 }
 
-/// A scene file names the method too, and a scene without triangles has buffers without elements.
+/// A scene file names the method too. A scene without triangles needs no buffers; where they are asked for all the same, they have no elements.
 #[test]
 fn scene_files_choose_the_method() {
     let folder = Folder::new();
     let room = "[render]\nmethod = \"slhb\"\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\n";
     folder.write("room.toml", room);
-    folder.run(&[&["render", "room.toml"], &SMALL[..]].concat()).ok();
-    let sidecar: serde_json::Value = serde_json::from_slice(&folder.read("room.json")).unwrap();
-    assert_eq!(
-        (&sidecar["settings"]["method"], &sidecar["result"]["lhb_elements"]),
-        (&"slhb".into(), &0.into())
-    );
+    let elements = |effects: &str| {
+        folder.run(&[&["render", "room.toml", "--effects", effects], &SMALL[..]].concat()).ok();
+        let sidecar: serde_json::Value = serde_json::from_slice(&folder.read("room.json")).unwrap();
+        assert_eq!(sidecar["settings"]["method"], "slhb");
+        sidecar["result"]["lhb_elements"].clone()
+    };
+    assert!(elements("auto").is_null());
+    assert_eq!(elements("all"), 0);
     folder.write("room.toml", &room.replace("slhb", "radiosity"));
     let failed = folder.run(&[&["render", "room.toml"], &SMALL[..]].concat());
     assert!(failed.stderr.contains("no method is called 'radiosity'"), "{}", failed.stderr);
