@@ -6,7 +6,7 @@ use super::study::Study;
 use crate::exit::{Failure, Stage};
 use std::time::Instant;
 use twinlight::Backend;
-use twinlight::methods::cost::{METRICS, Setting, split};
+use twinlight::methods::cost::{METHODS, METRICS, Setting, split};
 use twinlight::methods::post::image::Image;
 use twinlight::methods::post::metrics::Metric;
 use twinlight::methods::reference::StopReason;
@@ -47,6 +47,12 @@ impl Study<'_> {
         let left = self.splits_left();
         let points = self.records.points().filter(|point| left.contains(&point.setting));
         points.map(|point| SEEDS.len() as f64 * point.seconds.median).sum()
+    }
+
+    /// Of the settings that are split, those that were. Where a finer one was measured since, an older split says nothing any more.
+    pub fn splits_known(&self) -> impl Iterator<Item = &Parts> {
+        let points = METHODS.iter().filter_map(|(method, _)| self.split_point(method));
+        points.filter_map(|point| self.records.parts().find(|parts| parts.setting == point.setting))
     }
 
     fn splits_left(&self) -> Vec<Words> {
