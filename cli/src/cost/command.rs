@@ -108,6 +108,12 @@ impl Words {
     }
 }
 
+/// The command of this process, for a shell.
+pub fn asked() -> String {
+    let words = std::env::args().skip(1).map(|word| quoted(&word));
+    std::iter::once("twinlight".into()).chain(words).collect::<Vec<_>>().join(" ")
+}
+
 /// A word that a POSIX shell takes as it is.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);

@@ -1,6 +1,7 @@
 //! What a study found, as JSON: what the page shows and what `cost.json` holds.
 
 use super::base64;
+use super::command;
 use super::kernels;
 use super::records::{Parts, Point};
 use super::study::Study;
@@ -34,7 +35,7 @@ impl Told<'_> {
         let mode = if self.info.strict { "strict" } else { "portable" };
         Ok(json!({
             "twinlight": env!("CARGO_PKG_VERSION"),
-            "command": format!("twinlight cost {}", args.scene),
+            "command": command::asked(),
             "finished": self.is_complete,
             "scene": { "source": args.scene, "triangles": setup.prepared.scene.triangle_count() },
             "size": [args.size.0, args.size.1],
@@ -49,7 +50,7 @@ impl Told<'_> {
                 .map(|(key, title)| json!({ "key": key, "title": title })).collect::<Vec<_>>(),
             "knobs": self.knobs(),
             "points": points.iter().enumerate().map(of_point).collect::<Vec<_>>(),
-            "split": study.records.parts().flat_map(|parts| self.split(parts, &points)).collect::<Vec<_>>(),
+            "split": study.splits_known().flat_map(|parts| self.split(parts, &points)).collect::<Vec<_>>(),
             "kernels": kernels::json(&points),
         }))
     }

@@ -72,7 +72,8 @@ fn on_backend<B: Backend>(setup: &Setup, backend: &B) -> Result<(), Failure> {
     let methods = methods(&args.methods);
     let sweep = if args.quick { Sweep::quick(&methods) } else { Sweep::new(&methods) };
     let before = records.points().count();
-    let mut study = Study { setup, judge: &judge, methods: &methods, sweep, records, pictures: &pictures };
+    let (judge, methods, pictures) = (&judge, &methods, &pictures);
+    let mut study = Study { setup, judge, methods, sweep, records, pictures, finest: Vec::new() };
     let end = study.run(backend);
     setup.progress.clear();
     let end = end?;

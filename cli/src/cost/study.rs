@@ -11,6 +11,7 @@ use crate::report;
 use crate::source;
 use std::time::Instant;
 use twinlight::methods::cost::{Effort, Measured, Setting, Sweep, Tried, errors, measure};
+use twinlight::methods::post::image::Image;
 use twinlight::{Backend, Error};
 
 /// How a study ended.
@@ -32,6 +33,8 @@ pub struct Study<'a> {
     pub sweep: Sweep,
     pub records: Records,
     pub pictures: &'a Pictures,
+    /// What the finest settings made in this run, for their splits.
+    pub finest: Vec<(Words, Image)>,
 }
 
 impl Study<'_> {
@@ -105,10 +108,13 @@ impl Study<'_> {
         self.records.add(start.elapsed().as_secs_f64(), what)
     }
 
-    fn point(&self, setting: Words, measured: Measured) -> Result<What, Failure> {
+    fn point(&mut self, setting: Words, measured: Measured) -> Result<What, Failure> {
         let image = self.setup.image(measured.radiance)?;
         let found = errors(&image, self.judge.reference.image(), &self.setup.tone);
         self.pictures.keep(&setting, &image)?;
+        if setting.is_finest() {
+            self.finest.push((setting.clone(), image));
+        }
         let steps = measured.steps.into_iter().map(|step| StepLine {
             name: step.name,
             calls: step.calls,

@@ -34,6 +34,15 @@ fn a_study_measures_every_method_and_knows_its_front() {
     assert_eq!(run.stdout, "study/cost.html\nstudy/cost.json\nstudy/cost.csv\n");
     let study = study(&folder);
     assert_eq!((&study["finished"], &study["bounces"]), (&true.into(), &4.into()));
+    let command = study["command"].as_str().unwrap();
+    assert!(command.starts_with("twinlight cost builtin:cornell --size 16x16"), "{command}");
+    let splits = study["split"].as_array().unwrap();
+    assert_eq!(splits.len(), 3 * 2);
+    for split in splits {
+        assert!(split["noise"].as_f64().unwrap() > 0.0 && split["bias"].as_f64().unwrap().is_finite());
+        let point = &study["points"][split["point"].as_u64().unwrap() as usize];
+        assert_eq!(point["method"], split["method"]);
+    }
     assert_eq!((&study["reference"]["spp"], &study["reference"]["image"]), (&64.into(), &Value::Null));
     let (points, metrics) = (study["points"].as_array().unwrap(), study["metrics"].as_array().unwrap());
     for method in ["reference", "slhb", "voxel"] {
