@@ -8,7 +8,7 @@ use twinlight::cpu::CpuBackend;
 use twinlight::io::write_file;
 use twinlight::{Backend, Error};
 use twinlight_conformance::report::Report;
-use twinlight_conformance::{Effort, Options, expectations, suite};
+use twinlight_conformance::{Effort, Options, Trial, expectations, own};
 
 /// Runs the command.
 ///
@@ -20,7 +20,7 @@ pub fn run(args: &ConformArgs) -> Result<(), Failure> {
     let date = date(SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or(Duration::ZERO));
     let mut runs = Runs { args, options, date, reports: Vec::new() };
     if runs.wants(&["cpu"]) {
-        let found = runs.trials(&CpuBackend::new());
+        let found = runs.trials(&CpuBackend::new(), own::cpu_suite);
         runs.keep(found)?;
     }
     gpus(&mut runs)?;
@@ -72,7 +72,11 @@ impl Runs<'_> {
     }
 
     /// Runs the trials that are asked for.
-    fn trials<B: Backend + Sync>(&self, backend: &B) -> Report {
+    fn trials<'a, B: Backend>(
+        &'a self,
+        backend: &'a B,
+        suite: fn(&'a B, &'a Options) -> Vec<Trial<'a>>,
+    ) -> Report {
         let mut found = Report::new(backend.info(), &self.date);
         for trial in suite(backend, &self.options).iter().filter(|trial| self.includes(&trial.name)) {
             found.run(trial, expectations::KNOWN);
@@ -107,7 +111,7 @@ fn gpus(runs: &mut Runs<'_>) -> Result<(), Failure> {
             let selector = AdapterSelector::Index(index);
             let options = DeviceOptions { adapter: selector, mode: Some(mode), ..DeviceOptions::default() };
             let backend = GpuBackend::open(&options).map_err(Failure::at(Stage::Device))?;
-            let mut found = runs.trials(&backend);
+            let mut found = runs.trials(&backend, own::gpu_suite);
             against_cpu(runs, &backend, &mut found);
             runs.keep(found)?;
         }
@@ -121,7 +125,7 @@ fn against_cpu(runs: &Runs<'_>, backend: &twinlight::gpu::GpuBackend, found: &mu
     use std::time::Instant;
     use twinlight_conformance::cross;
     let cpu = CpuBackend::new();
-    for (kernel, check) in cross::checks() {
+    for (kernel, check) in own::gpu_checks() {
         let name = format!("{kernel}.against_cpu");
         if runs.includes(&name) {
             let start = Instant::now();

@@ -4,8 +4,9 @@
 use crate::expectations::{Verdict, judge};
 use crate::faulty::Faulty;
 use crate::suite;
-use crate::trial::{Effort, Options};
-use twinlight_core::Backend;
+use crate::trial::{Effort, Options, Trial};
+use std::time::Instant;
+use twinlight_core::{Backend, BackendInfo};
 
 macro_rules! faults {
     ($($kernel:literal: $($variant:ident $story:literal),+;)+) => {
@@ -515,23 +516,59 @@ pub struct Uncaught {
     pub story: &'static str,
 }
 
-/// Runs `fault`'s kernel's trials on `backend` with the bug planted and returns the first trial that fails.
-pub fn caught_by<B: Backend + Sync>(backend: &B, fault: Fault, kernel: &str, seed: u64) -> Option<String> {
-    let options =
-        Options { effort: Effort::Quick, seed, kernels: vec![kernel.to_owned()], ..Options::default() };
-    let faulty = Faulty::new(backend, fault);
-    let info = backend.info();
-    let failed =
-        |trial: &crate::Trial<'_>| matches!(judge(&[], &info, &trial.name, trial.run()), Verdict::Failed(_));
-    let trials = suite(&faulty, &options);
-    trials.iter().find(|trial| failed(trial)).map(|trial| trial.name.clone())
+/// What the trials run with: whether one fails is asked, not on how small an input.
+fn options(kernel: &str, seed: u64) -> Options {
+    Options {
+        effort: Effort::Quick,
+        seed,
+        kernels: vec![kernel.to_owned()],
+        first_evidence: true,
+        ..Options::default()
+    }
+}
+
+fn fails(trial: &Trial<'_>, info: &BackendInfo) -> bool {
+    matches!(judge(&[], info, &trial.name, trial.run()), Verdict::Failed(_))
+}
+
+/// Names of `kernel`'s trials, the cheapest first, as they run on `backend` wrapped with no bug planted.
+///
+/// # Errors
+/// The first trial that fails.
+pub fn passing<B: Backend + Sync>(backend: &B, kernel: &str, seed: u64) -> Result<Vec<String>, String> {
+    let (options, faulty) = (options(kernel, seed), Faulty::new(backend, Fault::None));
+    let mut timed = Vec::new();
+    for trial in suite(&faulty, &options) {
+        let start = Instant::now();
+        if fails(&trial, &backend.info()) {
+            return Err(trial.name);
+        }
+        timed.push((start.elapsed(), trial.name));
+    }
+    timed.sort();
+    Ok(timed.into_iter().map(|(_, name)| name).collect())
+}
+
+/// Runs `fault`'s kernel's trials on `backend` with the bug planted and returns the first trial that fails. Those named in `order`
+/// run in it, before the others: most bugs show in what is cheap.
+pub fn caught_by<B: Backend + Sync>(
+    backend: &B,
+    fault: Fault,
+    kernel: &str,
+    seed: u64,
+    order: &[String],
+) -> Option<String> {
+    let (options, faulty) = (options(kernel, seed), Faulty::new(backend, fault));
+    let mut trials = suite(&faulty, &options);
+    trials.sort_by_key(|trial| order.iter().position(|name| *name == trial.name).unwrap_or(order.len()));
+    trials.iter().find(|trial| fails(trial, &backend.info())).map(|trial| trial.name.clone())
 }
 
 /// The bugs that the suite does not see in `backend`.
 pub fn uncaught<B: Backend + Sync>(backend: &B, seed: u64) -> Vec<Uncaught> {
     FAULTS
         .iter()
-        .filter(|(fault, kernel, _)| caught_by(backend, *fault, kernel, seed).is_none())
+        .filter(|(fault, kernel, _)| caught_by(backend, *fault, kernel, seed, &[]).is_none())
         .map(|&(fault, kernel, story)| Uncaught { fault, kernel, story })
         .collect()
 }

@@ -26,6 +26,7 @@ pub mod faults;
 pub mod faulty;
 pub mod kernels;
 pub mod oracle;
+pub mod own;
 pub mod report;
 pub mod require;
 pub mod scenes;

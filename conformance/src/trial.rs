@@ -25,6 +25,8 @@ pub struct Options {
     pub dump_dir: Option<PathBuf>,
     /// Only these kernels' trials; empty for all.
     pub kernels: Vec<String>,
+    /// Whether the first evidence will do: properties then name the input that broke them, and look for no smaller one.
+    pub first_evidence: bool,
 }
 
 /// How a trial ended.

@@ -10,7 +10,7 @@ mod suite;
 use std::process::ExitCode;
 use twinlight_backend_cpu::CpuBackend;
 use twinlight_backend_gpu::{AdapterReport, AdapterSelector, DeviceOptions, GpuBackend, Mode, adapters};
-use twinlight_conformance::{Effort, Verdict, cross, kernels, require};
+use twinlight_conformance::{Effort, Verdict, cross, kernels, own, require};
 
 fn main() -> ExitCode {
     let mut list = list::List::from_args();
@@ -47,8 +47,8 @@ fn add_mode(list: &mut list::List, index: usize, report: &AdapterReport, mode: M
         Ok(backend) => {
             // One device per adapter and mode for the life of the process: devices are dear, leaks of them too.
             let backend: &'static GpuBackend = Box::leak(Box::new(backend));
-            suite::add(list, &label, backend, Effort::Quick, kernels_of(mode));
-            for (name, check) in cross::checks::<CpuBackend, GpuBackend>() {
+            suite::add(list, &label, backend, own::gpu_suite, Effort::Quick, kernels_of(mode));
+            for (name, check) in own::gpu_checks() {
                 list.add(format!("{label} against cpu: {name}"), move || {
                     cross::judge(check(&CpuBackend::new(), backend))
                 });

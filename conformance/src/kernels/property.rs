@@ -7,10 +7,10 @@ use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, Test
 /// Marks a skip on its way through proptest, which only knows failures.
 const SKIP: &str = "\u{0}skip";
 
-/// Checks `law` on inputs drawn from `strategy` and reports the smallest input that breaks it.
+/// Checks `law` on inputs drawn from `strategy` and reports the smallest input that breaks it, or the first where that will do.
 ///
 /// # Errors
-/// That of `law` on the shrunk input.
+/// That of `law` on that input.
 pub(super) fn hold<S: Strategy, B>(
     cx: &Context<'_, B>,
     strategy: S,
@@ -18,7 +18,8 @@ pub(super) fn hold<S: Strategy, B>(
 ) -> Check {
     let cases = if cx.options.effort == Effort::Full { 48 } else { 12 };
     // Evidence belongs into the report, not into files beside the sources of whoever calls the suite.
-    let config = Config { cases, failure_persistence: None, max_shrink_iters: 200, ..Config::default() };
+    let max_shrink_iters = if cx.options.first_evidence { 0 } else { 200 };
+    let config = Config { cases, failure_persistence: None, max_shrink_iters, ..Config::default() };
     let mut seed = [0_u8; 32];
     seed[..8].copy_from_slice(&cx.options.seed.to_le_bytes());
     // Each trial draws its own inputs, whatever runs before it.

@@ -1,7 +1,10 @@
 //! Tests whose number is known at run time only. A skip is a visible outcome: ignored, with its reason.
+//!
+//! With `TWINLIGHT_TRIAL_TIMES` set, the seconds that each took go to stderr; `--test-threads=1` makes them comparable.
 
 use libtest_mimic::{Arguments, Completion, Failed, Trial};
 use std::process::ExitCode;
+use std::time::Instant;
 use twinlight_conformance::Verdict;
 
 /// Tests to run.
@@ -18,6 +21,14 @@ impl List {
 
     /// Adds one test.
     pub fn add(&mut self, name: String, test: impl FnOnce() -> Verdict + Send + 'static) {
+        let timed = std::env::var_os("TWINLIGHT_TRIAL_TIMES").map(|_| name.clone());
+        let test = move || {
+            let (start, verdict) = (Instant::now(), test());
+            if let Some(name) = timed {
+                eprintln!("{:9.3} s {name}", start.elapsed().as_secs_f64());
+            }
+            verdict
+        };
         self.tests.push(Trial::ignorable_test(name, move || match test() {
             Verdict::Passed => Ok(Completion::Completed),
             Verdict::Failed(evidence) => Err(Failed::from(evidence)),

@@ -2,14 +2,15 @@
 
 use crate::list::List;
 use twinlight_conformance::expectations::{KNOWN, judge};
-use twinlight_conformance::{Effort, Options, suite};
+use twinlight_conformance::{Effort, Options, Trial};
 use twinlight_core::Backend;
 
-/// Adds the trials of `kernels` (all for none) on `backend` under `label`.
+/// Adds the trials that `suite` lists of `kernels` (all for none) on `backend` under `label`.
 pub fn add<B: Backend + Send + Sync>(
     list: &mut List,
     label: &str,
     backend: &'static B,
+    suite: fn(&'static B, &'static Options) -> Vec<Trial<'static>>,
     effort: Effort,
     kernels: Vec<String>,
 ) {
