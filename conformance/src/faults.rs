@@ -431,6 +431,8 @@ faults! {
         ConesSwapAxes "weights along x and z change places",
         ConesEmptyBorder "beyond the border is nothing",
         ConesGoOnOutside "cones go on beyond the grid",
+        ConesEndAtBorder "cones end with the last sample in the grid",
+        ConesLookOutside "samples beyond the border are not brought in",
         ConesSwapFaces "light comes from the faces behind",
         ConesUnsquared "faces weigh as much as directions, not as their squares",
         ConesAlong "harmonics are read along the cone, not against it",

@@ -216,6 +216,18 @@ fn is_in_grid(p: vec3<f32>) -> bool {
     return p.x >= 0.0f && p.x <= end.x && p.y >= 0.0f && p.y <= end.y && p.z >= 0.0f && p.z <= end.z;
 }
 
+// Whether a sphere of radius `r` at `p` has a part in the grid.
+fn meets_grid(p: vec3<f32>, r: f32) -> bool {
+    let end = vec3<f32>(params.dims) + vec3<f32>(r);
+    return p.x > -r && p.x < end.x && p.y > -r && p.y < end.y && p.z > -r && p.z < end.z;
+}
+
+// The place in the grid next to `p`.
+fn brought_in(p: vec3<f32>) -> vec3<f32> {
+    let end = vec3<f32>(params.dims);
+    return select(vec3<f32>(0.0f), select(end, p, p < end), p > vec3<f32>(0.0f));
+}
+
 // The least power of two that is at least `x` >= 1.
 fn power_of_two(x: f32) -> f32 {
     return bitcast<f32>((bitcast<u32>(x) + 0x7fffffu) & 0x7f800000u);
@@ -260,13 +272,15 @@ fn trace_cone(cone: Cone) -> ConeLight {
     }
     var rgb = vec3<f32>(0.0f);
     var t = 1.0f;
+    var is_inside = is_in_grid(apex);
     for (var i = 0u; i < MAX_STEPS; i++) {
         let p = apex + direction * d;
-        if !(d <= reach) || !is_in_grid(p) || !(t > LEAST_TRANSMITTANCE) {
+        let r = radius(d, s, sixty);
+        if !is_inside || !meets_grid(p, r) || !(d <= reach) || !(t > LEAST_TRANSMITTANCE) {
             break;
         }
-        let r = radius(d, s, sixty);
-        let found = sample(space, p, r + r, direction);
+        is_inside = is_in_grid(p);
+        let found = sample(space, brought_in(p), r + r, direction);
         let opacity = found.w * (1.0f / f32(OPAQUE));
         rgb += found.xyz * t;
         t *= 1.0f - select(1.0f, opacity, opacity < 1.0f);

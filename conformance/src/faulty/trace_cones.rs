@@ -78,11 +78,9 @@ impl Broken<'_> {
         }
         let least = if self.has(Fault::ConesEndEarly) { 0.0625 } else { LEAST_TRANSMITTANCE };
         let (mut rgb, mut left) = ([0.0; 3], 1.0);
+        let mut is_inside = self.is_in_grid(origin);
         for _ in 0..if self.has(Fault::ConesFewSteps) { 256 } else { MAX_STEPS } {
             let place = [0, 1, 2].map(|a| origin[a] + cone.direction[a] * d);
-            if !(d <= reach) || !self.is_in_grid(place) || !(left > least) {
-                break;
-            }
             let wide = d * sine;
             let radius = if is_sixty {
                 d * 0.5
@@ -91,7 +89,11 @@ impl Broken<'_> {
             } else {
                 0.5
             };
-            let found = self.sample(cone, origin, place, radius + radius);
+            if !is_inside || !self.meets_grid(place, radius) || !(d <= reach) || !(left > least) {
+                break;
+            }
+            is_inside = self.is_in_grid(place) || self.has(Fault::ConesGoOnOutside);
+            let found = self.sample(cone, origin, self.brought_in(place), radius + radius);
             let opacity = found[3] * (1.0 / OPAQUE as f32);
             let weight = if self.has(Fault::ConesUnattenuated) { 1.0 } else { left };
             rgb = [0, 1, 2].map(|c| rgb[c] + found[c] * weight);
@@ -112,8 +114,21 @@ impl Broken<'_> {
     }
 
     fn is_in_grid(&self, place: Point) -> bool {
-        let most = if self.has(Fault::ConesGoOnOutside) { 1.5 } else { 0.0 };
-        (0..3).all(|a| place[a] >= -most && place[a] <= self.pyramid.dims[a] as f32 + most)
+        (0..3).all(|a| place[a] >= 0.0 && place[a] <= self.pyramid.dims[a] as f32)
+    }
+
+    fn meets_grid(&self, place: Point, radius: f32) -> bool {
+        if self.has(Fault::ConesEndAtBorder) {
+            return self.is_in_grid(place);
+        }
+        (0..3).all(|a| place[a] > -radius && place[a] < self.pyramid.dims[a] as f32 + radius)
+    }
+
+    fn brought_in(&self, place: Point) -> Point {
+        if self.has(Fault::ConesLookOutside) {
+            return place;
+        }
+        [0, 1, 2].map(|a| place[a].clamp(0.0, self.pyramid.dims[a] as f32))
     }
 
     fn sample(&self, cone: &Cone, origin: Point, place: Point, width: f32) -> Sample {

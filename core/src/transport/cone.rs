@@ -220,6 +220,21 @@ fn is_in_grid(view: &VoxelView<'_>, p: Vec3) -> bool {
     p.x >= 0.0 && p.x <= x && p.y >= 0.0 && p.y <= y && p.z >= 0.0 && p.z <= z
 }
 
+/// Whether a sphere of radius `r` at `p` has a part in the grid.
+#[inline(always)]
+fn meets_grid(view: &VoxelView<'_>, p: Vec3, r: f32) -> bool {
+    let [x, y, z] = view.dims.map(|n| n as f32);
+    p.x > -r && p.x < x + r && p.y > -r && p.y < y + r && p.z > -r && p.z < z + r
+}
+
+/// The place in the grid next to `p`.
+#[inline(always)]
+fn brought_in(view: &VoxelView<'_>, p: Vec3) -> Vec3 {
+    let [x, y, z] = view.dims.map(|n| n as f32);
+    let within = |c: f32, end: f32| if c > 0.0 { if c < end { c } else { end } } else { 0.0 };
+    Vec3::new(within(p.x, x), within(p.y, y), within(p.z, z))
+}
+
 /// The least power of two that is at least `x` ≥ 1.
 #[inline(always)]
 fn power_of_two(x: f32) -> f32 {
@@ -249,11 +264,9 @@ pub fn trace_cone(view: &VoxelView<'_>, cone: &Cone) -> ConeLight {
     }
     let mut rgb = Vec3::ZERO;
     let mut t = 1.0;
+    let mut is_inside = is_in_grid(view, apex);
     for _ in 0..MAX_STEPS {
         let p = apex + direction * d;
-        if !(d <= reach) || !is_in_grid(view, p) || !(t > LEAST_TRANSMITTANCE) {
-            break;
-        }
         let wide = d * s;
         let r = if sixty {
             d * 0.5
@@ -262,7 +275,11 @@ pub fn trace_cone(view: &VoxelView<'_>, cone: &Cone) -> ConeLight {
         } else {
             0.5
         };
-        let found = sample(view, &space, p, r + r, direction);
+        if !is_inside || !meets_grid(view, p, r) || !(d <= reach) || !(t > LEAST_TRANSMITTANCE) {
+            break;
+        }
+        is_inside = is_in_grid(view, p);
+        let found = sample(view, &space, brought_in(view, p), r + r, direction);
         let opacity = found.w * (1.0 / OPAQUE as f32);
         rgb += Vec3::new(found.x, found.y, found.z) * t;
         t *= 1.0 - if opacity < 1.0 { opacity } else { 1.0 };

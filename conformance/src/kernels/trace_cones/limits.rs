@@ -6,7 +6,7 @@ use crate::kernels::property;
 use crate::trial::{Check, Context, Listing, ensure, list_trials};
 use proptest::prelude::*;
 use twinlight_core::Backend;
-use twinlight_core::kernels::reduce_mips::{OPAQUE, VoxelLight};
+use twinlight_core::kernels::reduce_mips::{ANISOTROPIC, OPAQUE, VoxelLight};
 use twinlight_core::kernels::trace_cones::{
     Cone, ConeLight, LEAST_TRANSMITTANCE, MAX_STEPS, SIXTY_DEGREES, TraceConesBlock,
 };
@@ -15,7 +15,7 @@ use twinlight_fixtures::random::Random;
 pub(super) fn list<B: Backend + Sync>(list: &mut Listing<'_, B>) {
     list_trials!(list, "trace_cones":
         m7_more_opacity_lets_no_more_through, constant_light_is_seen_as_it_is, thin_walls_hold_on_every_level,
-        m9_borders_are_clamped, m9_outside_is_open,
+        m9_borders_are_clamped, m9_outside_is_open, m9_closed_rooms_let_nothing_through,
     );
 }
 
@@ -62,10 +62,12 @@ fn constant_light_is_seen_as_it_is<B: Backend>(cx: &Context<'_, B>) -> Check {
             let width = (1 << level) as f32;
             let centre = [5.5_f32, 9.5, 7.5].map(|c| ((c / width).floor() + 0.5) * width);
             for axis in 0..3 {
+                let is_far = centre[axis] >= width;
                 let mut direction = [0.0; 3];
-                direction[axis] = -1.0;
+                direction[axis] = if is_far { 1.0 } else { -1.0 };
                 let mut origin = centre;
-                origin[axis] += width;
+                // Apices are in the grid: the one voxel of the last level is met at its end.
+                origin[axis] = if is_far { origin[axis] - width } else { (origin[axis] + width).min(16.0) };
                 let cone = Cone { start: width, ..cone(origin, direction, 0.0) };
                 let light = agreed(cx, &lit, &block, &[cone])?;
                 // A division by what is opaque has 2.5 ulp elsewhere.
@@ -126,7 +128,7 @@ fn m9_borders_are_clamped<B: Backend>(cx: &Context<'_, B>) -> Check {
     Ok(())
 }
 
-/// Where a cone's first sample is outside, there is nothing, whatever is ahead.
+/// Where a cone's apex is outside, there is nothing, whatever is ahead.
 fn m9_outside_is_open<B: Backend>(cx: &Context<'_, B>) -> Check {
     let dims = [4, 6, 5];
     let leaves = filled([0; 3], dims, VoxelLight { rgb: [900, 9, 77], opacity: OPAQUE });
@@ -145,6 +147,33 @@ fn m9_outside_is_open<B: Backend>(cx: &Context<'_, B>) -> Check {
         }
         let light = traced(cx.backend, &lit, &plain(storage), &cones)?;
         same(&format!("{lit:?}"), &light, &vec![OPEN; cones.len()])?;
+    }
+    Ok(())
+}
+
+/// What a sample within its radius of the border may leave open: between two levels, (2 − m)·(m − 1)/2 of the finer one's weight at most; and eight
+/// roundings of weights.
+const BESIDE_BORDER: f32 = 0.125 + 8.0 / 8_388_608.0;
+
+/// Walls of one voxel along the grid's border: however wide a cone along an axis is, and wherever it begins, it ends there.
+fn m9_closed_rooms_let_nothing_through<B: Backend>(cx: &Context<'_, B>) -> Check {
+    let mut random = Random::new(cx.options.seed ^ 52);
+    let mut leaves = filled([0; 3], [16; 3], VoxelLight { rgb: [900, 9, 77], opacity: OPAQUE });
+    let inside = filled([1; 3], [15; 3], VoxelLight::default());
+    leaves.retain(|code, _| !inside.contains_key(code));
+    let lit = Lit::new([16; 3], &leaves, ANISOTROPIC);
+    for flags in [0, SIXTY_DEGREES] {
+        let block = TraceConesBlock { flags, ..plain(ANISOTROPIC) };
+        let along_axis = |i: usize| {
+            let mut direction = [0.0; 3];
+            direction[i % 3] = if i % 2 == 0 { 1.0 } else { -1.0 };
+            cone([(); 3].map(|()| random.between(2.0, 14.0) as f32), direction, random.unit() as f32)
+        };
+        let cones: Vec<Cone> = (0..120).map(along_axis).collect();
+        let most = if flags == 0 { BESIDE_BORDER } else { LEAST_TRANSMITTANCE };
+        for (light, cone) in agreed(cx, &lit, &block, &cones)?.iter().zip(&cones) {
+            ensure(light.transmittance <= most, || format!("{flags}: {cone:?} lets {light:?} through"))?;
+        }
     }
     Ok(())
 }

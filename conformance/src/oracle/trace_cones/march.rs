@@ -56,18 +56,20 @@ impl March<'_> {
     fn ends_from(&self, start: Within) -> Vec<([Within; 3], Within)> {
         let mut ends = Vec::new();
         let (mut d, mut rgb, mut left) = (start, [ZERO; 3], ONE);
+        let mut was_outside = self.is_outside(&self.origin);
         for _ in 0..MAX_STEPS {
             let place = [0, 1, 2].map(|a| self.origin[a] + d * Within::exactly(self.direction[a]));
             let is_spent = known(LEAST_TRANSMITTANCE).is_at_least(left);
-            let is_over = any([self.is_outside(&place), d.is_more(self.reach), is_spent]);
+            let radius = if self.is_sixty { d.scaled(0.5) } else { (d * self.sine).max(HALF) };
+            let is_over = any([was_outside, self.misses(&place, radius), d.is_more(self.reach), is_spent]);
             if is_over != Some(false) {
                 ends.push((rgb, left));
             }
             if is_over == Some(true) {
                 return ends;
             }
-            let radius = if self.is_sixty { d.scaled(0.5) } else { (d * self.sine).max(HALF) };
-            let seen = self.seen(place, radius.scaled(2.0));
+            was_outside = self.is_outside(&place);
+            let seen = self.seen(self.brought_in(place), radius.scaled(2.0));
             let opacity = seen[3].scaled(1.0 / f64::from(OPAQUE)).min(ONE);
             rgb = [0, 1, 2].map(|c| rgb[c] + left * seen[c]);
             left = left * (ONE - opacity);
@@ -85,11 +87,26 @@ impl March<'_> {
     }
 
     fn is_outside(&self, place: &[Within; 3]) -> Option<bool> {
+        let beyond = |axis: usize| any([ZERO.is_more(place[axis]), place[axis].is_more(self.count(axis))]);
+        any([beyond(0), beyond(1), beyond(2)])
+    }
+
+    /// Whether a sphere has no part in the grid.
+    fn misses(&self, place: &[Within; 3], radius: Within) -> Option<bool> {
         let beyond = |axis: usize| {
-            let count = known(self.pyramid.dims[axis] as f32);
-            any([ZERO.is_more(place[axis]), place[axis].is_more(count)])
+            let (low, high) = (ZERO - radius, self.count(axis) + radius);
+            any([low.is_at_least(place[axis]), place[axis].is_at_least(high)])
         };
         any([beyond(0), beyond(1), beyond(2)])
+    }
+
+    fn brought_in(&self, place: [Within; 3]) -> [Within; 3] {
+        [0, 1, 2].map(|axis| place[axis].max(ZERO).min(self.count(axis)))
+    }
+
+    /// Voxels along an axis.
+    fn count(&self, axis: usize) -> Within {
+        known(self.pyramid.dims[axis] as f32)
     }
 
     /// The sample of a sphere of some width, which is at least 1.
