@@ -83,6 +83,8 @@ pub struct Candidate {
     pub fixed: f64,
     /// Seconds per sample of every pixel.
     pub per_sample: f64,
+    /// Fewer samples were never measured: nothing is known of their noise.
+    pub least_samples: u32,
     /// What is to be small.
     pub error: Curve,
 }
@@ -109,10 +111,10 @@ impl Candidate {
         Choice { candidate, samples, seconds: self.seconds(samples), error: self.error.at(samples) }
     }
 
-    /// Samples that fit into a time, at most so many as anyone waits for; `None` where not even one does.
+    /// Samples that fit into a time, at most so many as anyone waits for; `None` where not even the fewest do.
     fn samples_within(&self, seconds: f64) -> Option<u32> {
         let samples = ((seconds - self.fixed) / self.per_sample).floor().min(f64::from(MOST_SAMPLES));
-        (samples >= 1.0).then_some(samples as u32)
+        (samples >= f64::from(self.least_samples.max(1))).then_some(samples as u32)
     }
 }
 
@@ -127,14 +129,16 @@ pub fn best_within(candidates: &[Candidate], seconds: f64) -> Option<Choice> {
 /// The quickest candidate with at most this error; `None` where every bias is more.
 pub fn quickest_for(candidates: &[Candidate], error: f64) -> Option<Choice> {
     let good = candidates.iter().enumerate().filter_map(|(i, candidate)| {
-        candidate.error.samples_for(error).map(|samples| candidate.choice(i, samples))
+        let samples = candidate.error.samples_for(error)?.max(candidate.least_samples);
+        Some(candidate.choice(i, samples))
     });
     good.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
 }
 
-/// The quickest of all, with one sample.
+/// The quickest of all, with the fewest samples.
 pub fn quickest(candidates: &[Candidate]) -> Option<Choice> {
-    let all = candidates.iter().enumerate().map(|(i, candidate)| candidate.choice(i, 1));
+    let all =
+        candidates.iter().enumerate().map(|(i, candidate)| candidate.choice(i, candidate.least_samples));
     all.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
 }
 
@@ -144,7 +148,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn candidate(fixed: f64, per_sample: f64, bias: f64, noise: f64) -> Candidate {
-        Candidate { fixed, per_sample, error: Curve { bias, noise, of_roots: false } }
+        Candidate { fixed, per_sample, least_samples: 1, error: Curve { bias, noise, of_roots: false } }
     }
 
     #[test]
@@ -157,16 +161,25 @@ mod tests {
         assert_eq!(chosen(0.1), Some(2));
         assert_eq!(chosen(1.0), Some(0));
         assert_eq!(chosen(10.0), Some(1));
-        assert_eq!(quickest_for(&all, 0.3).map(|c| (c.candidate, c.samples)), Some((2, 3)));
+        assert_eq!(quickest_for(&all, 0.31).map(|c| (c.candidate, c.samples)), Some((2, 3)));
         assert_eq!(quickest_for(&all, 0.01).map(|c| (c.candidate, c.samples)), Some((1, 200)));
         assert_eq!(quickest_for(&all[..1], 0.01), None, "its bias is more");
         assert_eq!(quickest(&all).map(|c| c.candidate), Some(2));
     }
 
     #[test]
+    fn fewer_samples_than_measured_are_not_chosen() {
+        let few = Candidate { least_samples: 16, ..candidate(0.0, 0.01, 0.1, 0.0) };
+        assert_eq!(best_within(std::slice::from_ref(&few), 0.15), None);
+        assert_eq!(best_within(std::slice::from_ref(&few), 0.17).map(|c| c.samples), Some(17));
+        assert_eq!(quickest_for(std::slice::from_ref(&few), 0.2).map(|c| c.samples), Some(16));
+        assert_eq!(quickest(&[few]).map(|c| c.samples), Some(16));
+    }
+
+    #[test]
     fn one_measurement_is_no_promise_of_less() {
         let curve = Curve::through(&[(16, 0.3)], false).unwrap();
-        assert_eq!((curve.bias, curve.noise), (0.3, 0.0));
+        assert!((curve.bias - 0.3).abs() < 1e-12 && curve.noise == 0.0, "{curve:?}");
         assert_eq!(Curve::through(&[], true), None);
         assert_eq!(Curve::through(&[(4, f64::NAN), (0, 1.0)], true), None);
     }

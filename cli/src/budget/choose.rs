@@ -125,8 +125,12 @@ fn chosen(expected: Vec<Expected>, wish: Wish, method: Option<&str>) -> Option<C
     let expected: Vec<Expected> =
         expected.into_iter().filter(|e| method.is_none_or(|method| e.row.method == method)).collect();
     let candidates = |of: fn(&Expected) -> Curve| -> Vec<Candidate> {
-        let candidate =
-            |e: &Expected| Candidate { fixed: e.build + e.once, per_sample: e.per_sample, error: of(e) };
+        let candidate = |e: &Expected| Candidate {
+            fixed: e.build + e.once,
+            per_sample: e.per_sample,
+            least_samples: e.row.samples.0,
+            error: of(e),
+        };
         expected.iter().map(candidate).collect()
     };
     let all = candidates(|e| e.relmse);
@@ -155,7 +159,7 @@ fn chosen(expected: Vec<Expected>, wish: Wish, method: Option<&str>) -> Option<C
 /// What comes nearest to no ꟻLIP at all with as many samples as were measured: more might take hours.
 fn least_measured(expected: &[Expected]) -> Option<Choice> {
     let all = expected.iter().enumerate().map(|(candidate, e)| {
-        let samples = e.row.most_samples;
+        let samples = e.row.samples.1;
         let seconds = e.build + e.once + e.per_sample * f64::from(samples);
         Choice { candidate, samples, seconds, error: e.flip.at(samples) }
     });
@@ -177,7 +181,7 @@ mod tests {
             per_sample,
             relmse: curve,
             flip,
-            most_samples: 16,
+            samples: (1, 16),
         }
     }
 

@@ -42,8 +42,8 @@ pub struct Row {
     pub relmse: Curve,
     /// Of ꟻLIP.
     pub flip: Curve,
-    /// Most samples that were measured.
-    pub most_samples: u32,
+    /// Fewest and most samples that were measured.
+    pub samples: (u32, u32),
 }
 
 /// Measured with one number of samples.
@@ -121,6 +121,10 @@ fn read_point(json: &Value) -> Option<(String, Vec<(String, String)>, Point)> {
             .map(|(_, seconds)| seconds)
             .sum::<f64>()
     };
+    // A gather's samples are the directions of its set, and no other number is possible.
+    if flags.contains(&("--gather".into(), "all".into())) {
+        return None;
+    }
     let (build, sampling) = (of(&BUILDING), of(&SAMPLING));
     let once = (json["seconds"]["median"].as_f64()? - build - sampling).max(0.0);
     let error = |key: &str| json["errors"][key].as_f64().unwrap_or(f64::NAN);
@@ -133,6 +137,7 @@ fn row(method: String, flags: Vec<(String, String)>, points: &[Point], pixels: f
     let mean = |of: fn(&Point) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
     let samples: f64 = points.iter().map(|point| f64::from(point.samples)).sum();
     let sampling: f64 = points.iter().map(|point| point.sampling).sum();
+    let counts = || points.iter().map(|point| point.samples);
     let curve = |of: fn(&Point) -> f64, of_roots| {
         let measured: Vec<(u32, f64)> = points.iter().map(|point| (point.samples, of(point))).collect();
         Curve::through(&measured, of_roots)
@@ -145,7 +150,7 @@ fn row(method: String, flags: Vec<(String, String)>, points: &[Point], pixels: f
         per_sample: sampling / (samples * pixels),
         relmse: curve(|point| point.relmse, false)?,
         flip: curve(|point| point.flip, true)?,
-        most_samples: points.iter().map(|point| point.samples).max()?,
+        samples: (counts().min()?, counts().max()?),
     })
 }
 
