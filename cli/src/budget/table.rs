@@ -25,13 +25,16 @@ pub struct Look {
     pub indirect: f64,
 }
 
+/// Knobs with their values, as on the command line.
+pub type Flags = Vec<(String, String)>;
+
 /// A method with all knobs set but the number of samples. Times are seconds of the machine it was measured on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// As on the command line.
     pub method: String,
     /// Its knobs, as on the command line.
-    pub flags: Vec<(String, String)>,
+    pub flags: Flags,
     /// What is built, however large the picture is.
     pub build: f64,
     /// What is done once per pixel.
@@ -80,7 +83,7 @@ impl Table {
     /// Of `cost.json`; `None` where it doesn't say what a table needs.
     pub fn of_json(json: &Value) -> Option<Self> {
         let pixels = json["size"][0].as_f64()? * json["size"][1].as_f64()?;
-        let mut groups: Vec<(String, Vec<(String, String)>, Vec<Point>)> = Vec::new();
+        let mut groups: Vec<(String, Flags, Vec<Point>)> = Vec::new();
         for point in json["points"].as_array()? {
             let Some((method, flags, point)) = read_point(point) else { continue };
             match groups.iter_mut().find(|(m, f, _)| *m == method && *f == flags) {
@@ -105,8 +108,8 @@ impl Table {
     }
 }
 
-fn read_point(json: &Value) -> Option<(String, Vec<(String, String)>, Point)> {
-    let mut flags: Vec<(String, String)> = Vec::new();
+fn read_point(json: &Value) -> Option<(String, Flags, Point)> {
+    let mut flags = Flags::new();
     let mut samples = None;
     for pair in json["settings"].as_array()? {
         let (flag, value) = (pair[0].as_str()?, pair[1].as_str()?);
@@ -133,7 +136,7 @@ fn read_point(json: &Value) -> Option<(String, Vec<(String, String)>, Point)> {
     Some((json["method"].as_str()?.to_owned(), flags, point))
 }
 
-fn row(method: String, flags: Vec<(String, String)>, points: &[Point], pixels: f64) -> Option<Row> {
+fn row(method: String, flags: Flags, points: &[Point], pixels: f64) -> Option<Row> {
     let mean = |of: fn(&Point) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
     let samples: f64 = points.iter().map(|point| f64::from(point.samples)).sum();
     let sampling: f64 = points.iter().map(|point| point.sampling).sum();

@@ -103,6 +103,7 @@ const DIRECT: Settings = Settings {
     sampler: twinlight_methods::reference::Sampler::Independent,
     roulette_begin: 4,
     time: None,
+    pass: std::time::Duration::from_millis(250),
 };
 
 /// A shadow ray looks all the way to the light.

@@ -166,7 +166,7 @@ fn m9_closed_rooms_let_nothing_through<B: Backend>(cx: &Context<'_, B>) -> Check
         let block = TraceConesBlock { flags, ..plain(ANISOTROPIC) };
         let along_axis = |i: usize| {
             let mut direction = [0.0; 3];
-            direction[i % 3] = if i % 2 == 0 { 1.0 } else { -1.0 };
+            direction[i % 3] = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
             cone([(); 3].map(|()| random.between(2.0, 14.0) as f32), direction, random.unit() as f32)
         };
         let cones: Vec<Cone> = (0..120).map(along_axis).collect();
