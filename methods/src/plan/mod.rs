@@ -1,7 +1,7 @@
 //! What a render simulates, and what it leaves out and why: decided before anything runs.
 //!
 //! [`Plan::new`] looks at a scene and at what is asked for, and decides about every [`Effect`]. It is a function of its arguments, needs no device, and
-//! says of everything that is left out how much radiance a pixel can lack because of it. [`Plan::run`](crate::run) does what the plan says and nothing else.
+//! says of everything that is left out how much radiance a pixel can lack because of it. [`Plan::run`] does what the plan says and nothing else.
 //!
 //! ```
 //! use twinlight_core::scene::{Camera, Limits, compile};
