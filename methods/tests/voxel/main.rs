@@ -46,8 +46,8 @@ fn settings() -> VoxelSettings {
     VoxelSettings { grid: 64, bounces: 2, ..VoxelSettings::default() }
 }
 
-/// Wrong weights, units or levels are off by a factor of π, of 4, of ten. What is measured is 0.86 to 1.16 of the reference: the bias of voxels, which is
-/// no error of the code. The limits are a fifth beside it.
+/// Wrong weights, units or levels are off by a factor of π, of 4, of ten. What is measured is 1.04 to 1.29 of the reference: the bias of voxels, which is
+/// no error of the code. The limits are a tenth above it and a fifth below.
 #[test]
 fn every_storage_has_the_light_of_the_reference() {
     let (scene, camera) = compiled(&builtin("cornell").unwrap());
@@ -57,7 +57,7 @@ fn every_storage_has_the_light_of_the_reference() {
         for cones in [Cones::Six, Cones::Generic(16)] {
             let found = gathered(&backend, &scene, &camera, &VoxelSettings { storage, cones, ..settings() });
             let ratio = total(&found.indirect) / wanted;
-            assert!((0.7..1.4).contains(&ratio), "{storage} {cones}: {ratio}");
+            assert!((0.83..1.42).contains(&ratio), "{storage} {cones}: {ratio}");
         }
     }
 }
