@@ -9,7 +9,7 @@ use super::setup::Setup;
 use crate::exit::{Failure, Stage};
 use crate::report;
 use crate::source;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use twinlight::methods::cost::{Effort, Measured, Setting, Sweep, Tried, errors, measure};
 use twinlight::methods::post::image::Image;
 use twinlight::{Backend, Error};
@@ -92,7 +92,7 @@ impl Study<'_> {
         self.begin(&title(&words));
         let start = Instant::now();
         let job = setup.job(setting.method(), setting.flags(), setup.args.seed)?;
-        let (scene, effort) = (&setup.prepared.compiled, Effort::default());
+        let (scene, effort) = (&setup.prepared.compiled, self.effort(start));
         let go_on = || setup.interrupt.caught().is_none();
         let bytes = source::compiled_bytes(scene);
         let what = match measure(backend, scene, &job.camera, &job.plan, bytes, &effort, go_on) {
@@ -106,6 +106,12 @@ impl Study<'_> {
             Err(error) => return Err(Failure::Library(Stage::Device, error)),
         };
         self.records.add(start.elapsed().as_secs_f64(), what)
+    }
+
+    /// Of a setting that begins now: beyond the time limit, nothing is rendered twice.
+    fn effort(&self, now: Instant) -> Effort {
+        let left = (self.setup.args.time_limit - self.spent()).max(0.0);
+        Effort { until: Some(now + Duration::from_secs_f64(left)), ..Effort::default() }
     }
 
     fn point(&mut self, setting: Words, measured: Measured) -> Result<What, Failure> {

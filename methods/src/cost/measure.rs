@@ -18,12 +18,23 @@ pub struct Effort {
     pub most: usize,
     /// Timed runs beyond the least end when they took so long together. A first run that takes longer is warm for nearly all of its time, and counts.
     pub seconds: f64,
+    /// Once this time has come, one timed run is enough: a slow setting must not take its second where nobody waits for it.
+    pub until: Option<Instant>,
+}
+
+impl Effort {
+    /// Whether a run more is wanted after `runs` timed ones that took `spent` seconds.
+    fn wants_more(&self, runs: usize, spent: f64) -> bool {
+        let is_late = self.until.is_some_and(|until| Instant::now() >= until);
+        let least = if is_late { 1 } else { self.least };
+        runs < least || (!is_late && runs < self.most && spent < self.seconds)
+    }
 }
 
 impl Default for Effort {
     /// Two runs have a spread; five are enough where they take no time.
     fn default() -> Self {
-        Self { least: 2, most: 5, seconds: 0.6 }
+        Self { least: 2, most: 5, seconds: 0.6, until: None }
     }
 }
 
@@ -109,7 +120,7 @@ pub fn measure<B: Backend>(
     };
     let mut runs: Vec<Run> = Some(run).filter(|run| run.seconds > effort.seconds).into_iter().collect();
     let mut spent: f64 = runs.iter().map(|run| run.seconds).sum();
-    while runs.len() < effort.least || (runs.len() < effort.most && spent < effort.seconds) {
+    while effort.wants_more(runs.len(), spent) {
         let Some(run) = timed(backend, scene, camera, plan, &go_on)? else { return Ok(None) };
         spent += run.seconds;
         runs.push(run);
@@ -191,6 +202,7 @@ mod tests {
     use crate::reference::Settings;
     use crate::voxel::VoxelSettings;
     use std::cell::Cell;
+    use std::time::Duration;
     use twinlight_backend_cpu::CpuBackend;
     use twinlight_core::scene::{Limits, compile};
 
@@ -212,7 +224,7 @@ mod tests {
         let measured = |grid| {
             with(grid, |scene, camera, plan| {
                 let backend = CpuBackend::new();
-                let effort = Effort { least: 3, most: 3, seconds: 0.0 };
+                let effort = Effort { least: 3, most: 3, seconds: 0.0, until: None };
                 let measured =
                     measure(&backend, scene, camera, plan, 1000, &effort, || true).unwrap().unwrap();
                 let picture = plan.run(&backend, scene, camera, |_| Control::Continue).unwrap();
@@ -239,9 +251,18 @@ mod tests {
                 let measured = measure(&counted, scene, camera, plan, 0, &effort, || true);
                 measured.unwrap().unwrap().runs
             };
-            assert_eq!(runs(Effort { least: 1, most: 4, seconds: 1e9 }), 4);
-            assert_eq!(runs(Effort { least: 2, most: 4, seconds: 0.0 }), 2);
+            assert_eq!(runs(Effort { least: 1, most: 4, seconds: 1e9, until: None }), 4);
+            assert_eq!(runs(Effort { least: 2, most: 4, seconds: 0.0, until: None }), 2);
         });
+    }
+
+    #[test]
+    fn one_run_is_enough_when_it_is_late() {
+        let now = Instant::now();
+        let late = Effort { until: Some(now), ..Effort::default() };
+        let early = Effort { until: Some(now + Duration::from_secs(3600)), ..Effort::default() };
+        assert!(late.wants_more(0, 0.0) && !late.wants_more(1, 0.0));
+        assert!(early.wants_more(1, 9.0) && !early.wants_more(2, 9.0) && early.wants_more(4, 0.1));
     }
 
     /// Wherever a measurement is stopped, nothing half-measured comes out.
@@ -249,7 +270,7 @@ mod tests {
     fn a_stopped_measurement_is_none() {
         with(8, |scene, camera, plan| {
             let asked = Cell::new(0);
-            let effort = Effort { least: 2, most: 2, seconds: 0.0 };
+            let effort = Effort { least: 2, most: 2, seconds: 0.0, until: None };
             let run = |most: u32| {
                 asked.set(0);
                 let go_on = || {
