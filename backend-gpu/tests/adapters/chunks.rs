@@ -20,11 +20,11 @@ pub const CHECKS: &[(&str, Check)] = &[
     ("d3: a binding too small for a chunk is refused", tiny_binding),
 ];
 
-/// Bytes of a binding: chunks of 2¹⁶ words.
-const BINDING: u64 = 1 << 18;
-/// Two chunks of film and of G-buffer, and a part of a third.
-const WIDTH: u32 = 107;
-const HEIGHT: u32 = 79;
+/// Bytes of a binding: chunks of 2¹⁸ words.
+const BINDING: u64 = 1 << 20;
+/// Two megabytes of film and of G-buffer, which end within a chunk.
+const WIDTH: u32 = 211;
+const HEIGHT: u32 = 157;
 
 /// A backend whose bindings are small, and one with those of the adapter.
 fn backends(target: &Target) -> Result<[GpuBackend; 2], Failed> {
@@ -34,7 +34,7 @@ fn backends(target: &Target) -> Result<[GpuBackend; 2], Failed> {
 
 fn scan(target: &Target) -> Result<(), Failed> {
     let [small, _] = backends(target)?;
-    for len in [(1 << 16) - 1, 1 << 16, (1 << 16) + 1, 150_001] {
+    for len in [(1 << 18) - 1, 1 << 18, (1 << 18) + 1, 600_001] {
         let counts: Vec<u32> = (0..len).map(|i: u32| i.wrapping_mul(2_654_435_761) >> 20).collect();
         let mut offsets = small.zeroed::<u32>(counts.len())?;
         let total = small.scan(&small.upload(&counts)?, &mut offsets)?;
@@ -52,7 +52,7 @@ fn scan(target: &Target) -> Result<(), Failed> {
 
 fn rays(target: &Target) -> Result<(), Failed> {
     let scene = compile(&builtin("cornell").ok_or("no such scene")?, &Limits::default())?;
-    let rays = inputs::incoherent_rays(scene.bounds, 17_501, 1);
+    let rays = inputs::incoherent_rays(scene.bounds, 70_001, 1);
     let mut results = Vec::new();
     for backend in backends(target)? {
         let resident = backend.upload_scene(&scene)?;
@@ -106,7 +106,7 @@ fn pictures(target: &Target) -> Result<(), Failed> {
 fn sort(target: &Target) -> Result<(), Failed> {
     let [small, _] = backends(target)?;
     let random = |i: u32| i.wrapping_mul(2_654_435_761).rotate_left(11) ^ i;
-    for (len, values) in [(1 << 16, 50), ((1 << 16) + 1, 50), (175_001, 3), (175_001, u32::MAX)] {
+    for (len, values) in [(1 << 18, 50), ((1 << 18) + 1, 50), (700_001, 3), (700_001, u32::MAX)] {
         let keys: Vec<u32> = (0..len).map(|i| random(i) % values).collect();
         let mut buffer = small.upload(&keys)?;
         let mut payload = small.upload(&(0..len).collect::<Vec<u32>>())?;
@@ -120,7 +120,7 @@ fn sort(target: &Target) -> Result<(), Failed> {
     }
     // The low word decides only where the high one doesn't.
     let keys: Vec<u64> =
-        (0..75_001).map(|i| u64::from(random(i) % 5) << 32 | u64::from(random(!i) % 7)).collect();
+        (0..300_001).map(|i| u64::from(random(i) % 5) << 32 | u64::from(random(!i) % 7)).collect();
     let mut buffer = small.upload(&keys)?;
     let mut payload = small.upload(&(0..keys.len() as u32).collect::<Vec<u32>>())?;
     small.sort_u64(&mut buffer, &mut payload)?;
