@@ -6,6 +6,7 @@ mod cost;
 mod errors;
 mod help;
 mod motion;
+mod page;
 mod plan;
 mod render;
 mod scene;
